@@ -83,6 +83,29 @@ fn parameters_and_objective_of_other_models_are_those_of_pest() {
     }
 }
 
+/// Checks the intervals of a calibration against the standard deviations that pyemu computed from the run's own files:
+/// `pyemu/schur.py` wrote them, and compares again in `.ci/run`.
+#[test]
+fn deviations_are_those_of_pyemu() {
+    let rig = imported("decay");
+    let result = rig.object(&["calibrate", "case", "--preset", "descent", "--run", "run"]);
+    let text = fs::read_to_string(source("external/pyemu/decay.json")).unwrap();
+    let expected: Value = serde_json::from_str(&text).unwrap();
+    for (name, sd) in expected.as_object().unwrap() {
+        let [low, high] = [0, 1].map(|end| result["unknowns"][name]["ci95"][end].as_f64().unwrap());
+        let half = 0.5 * (counted("decay", name, high) - counted("decay", name, low));
+        let ratio = half / NORMAL / sd.as_f64().unwrap();
+        assert!((ratio - 1.0).abs() < 0.01, "{name} {ratio}");
+    }
+    let file = fs::read(rig.file("run/jacobian.jco")).unwrap();
+    // three parameters, 25 observations, each of 12 and 20 characters
+    assert_eq!(
+        file[..8],
+        [(-3_i32).to_le_bytes(), (-25_i32).to_le_bytes()].concat()
+    );
+    assert!(file.ends_with(b"y24                 "));
+}
+
 /// Half width of a 95 % interval of a normal distribution in standard deviations.
 const NORMAL: f64 = 1.96;
 

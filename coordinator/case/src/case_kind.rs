@@ -6,6 +6,7 @@ use crate::{
     source::RecordFolder,
     summary::{self, CaseSummary},
 };
+use discrepancy::identify::LinearEstimate;
 use discrepancy::thresholds::Thresholds;
 use protocol::{case::Case, job::Numerics, wire::WireError};
 
@@ -53,6 +54,16 @@ pub trait ModelKind: Sync {
     /// Returns the name and text of a parameter file with the given values of the unknowns, in the format of
     /// other programs for this kind of model; `None` if the kind has no such format.
     fn gene_file(&self, _: &Case, _genes: &[f64]) -> Option<(&'static str, String)> {
+        None
+    }
+
+    /// Returns the name and content of a file with the derivatives by the searched unknowns, in the format of other programs for
+    /// this kind of model; `None` if the kind has no such format.
+    fn jacobian_file(
+        &self,
+        _: &Case,
+        _derivatives: &LinearEstimate,
+    ) -> Option<(&'static str, Vec<u8>)> {
         None
     }
 

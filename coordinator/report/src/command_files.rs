@@ -77,13 +77,20 @@ fn residuals(shown: &SimulationView<'_>) -> Vec<ReiRow> {
                 ChannelSource::Column { .. } | ChannelSource::Pointer { .. } => None,
             });
         let modelled = shown.channel(channel);
+        // an imported channel has the name of its group as title, if that is no name of a channel
+        let is_word = !channel.title.contains(char::is_whitespace);
+        let group = if is_word {
+            &channel.title
+        } else {
+            &channel.name
+        };
         let pairs = record.mean.iter().zip(modelled).enumerate();
         let row = move |(i, (measured, modelled)): (usize, (&f64, &f64))| ReiRow {
             name: names
                 .as_ref()
                 .and_then(|names| names.get(i).cloned())
                 .unwrap_or_else(|| format!("{}_{}", channel.name, i + 1)),
-            group: channel.name.clone(),
+            group: group.clone(),
             measured: *measured,
             modelled: *modelled,
             weight: channel.weights.get(i).copied().unwrap_or(1.0),

@@ -9,7 +9,7 @@ use super::{
     watch::Watch,
 };
 use discrepancy::diagnose::Inputs;
-use discrepancy::identify::{IdentificationResult, UnknownEstimate, glance, identify};
+use discrepancy::identify::{IdentificationResult, LinearEstimate, identify, linear_estimate};
 use discrepancy::laboratory::Stage;
 use protocol::case::{Case, Channel};
 
@@ -57,8 +57,8 @@ pub async fn identify_on<E: Evaluator>(
     })
 }
 
-/// Estimates at the start values how well a measured record determines each unknown; none where no estimate
-/// is possible.
+/// Estimates at the start values, to first order, how well a measured record determines each unknown; none where no
+/// estimate is possible.
 ///
 /// # Errors
 /// If no evaluator is left, or the user stops.
@@ -67,7 +67,7 @@ pub async fn estimate_at_start_on<E: Evaluator>(
     inputs: &Inputs,
     watch: &mut dyn Watch<StageView>,
     stop: &mut Stop,
-) -> Result<Option<Vec<UnknownEstimate>>, StudyError> {
+) -> Result<Option<LinearEstimate>, StudyError> {
     let mut jobs = Jobs::new(
         (evaluator, IDENTIFIABILITY_JOBS),
         inputs,
@@ -75,5 +75,5 @@ pub async fn estimate_at_start_on<E: Evaluator>(
         watch,
         stop,
     );
-    glance(&mut jobs, inputs).await
+    linear_estimate(&mut jobs, inputs).await
 }

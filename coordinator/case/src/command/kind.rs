@@ -2,7 +2,7 @@
 use super::{
     assemble::assemble,
     file::{CommandCaseFile, ModelEntry},
-    parameters::parameters,
+    parameters::{jacobian, parameters},
 };
 use crate::{
     case_kind::ModelKind,
@@ -12,6 +12,7 @@ use crate::{
     loaded::Loaded,
     source::RecordFolder,
 };
+use discrepancy::identify::LinearEstimate;
 use protocol::{
     case::{Case, ModelSettings, Reproducibility},
     external::{External, KIND, entry_of, kind_of},
@@ -76,6 +77,14 @@ impl ModelKind for CommandKind {
 
     fn gene_file(&self, case: &Case, genes: &[f64]) -> Option<(&'static str, String)> {
         Some(("calibrated.par", parameters(case, genes)))
+    }
+
+    fn jacobian_file(
+        &self,
+        case: &Case,
+        derivatives: &LinearEstimate,
+    ) -> Option<(&'static str, Vec<u8>)> {
+        jacobian(case, derivatives)
     }
 
     fn is_program(&self) -> bool {

@@ -10,19 +10,32 @@ use crate::inputs::Inputs;
 use crate::laboratory::{Laboratory, Stage};
 use crate::model::experiments::Experiments;
 use crate::model::unknowns::{DefaultPrior, FittedModel, Point};
+use crate::record::measured::Curves;
 use crate::record::whitened::WhitenedRecord;
+use protocol::case::Scale;
 use search::least_squares::LeastSquaresSettings;
 
-/// Estimates the searched unknowns with linear intervals from the record of the calibrated condition, at the
-/// start point that the inputs state. Returns `None` without a record or a start point, or if the simulation
-/// does not complete.
+/// Linear estimate of the searched unknowns at given parameters.
+#[derive(Clone, Debug)]
+pub struct LinearEstimate {
+    /// Searched unknowns with their intervals.
+    pub unknowns: Vec<UnknownEstimate>,
+    /// Derivatives of the simulated channels of the record by each searched unknown: per decade on a logarithmic scale, else
+    /// per declared unit. Channels without an absolute zero have derivatives up to a constant.
+    pub derivatives: Vec<Curves>,
+    /// Index of each channel of the record among the channels of its condition.
+    pub channels: Vec<usize>,
+}
+
+/// Estimates the searched unknowns to first order from the record of the calibrated condition, at the start point that the
+/// inputs state. Returns `None` without a record or a start point, or if the simulation does not complete.
 ///
 /// # Errors
 /// Returns an error if no worker is left to simulate, or the user stops the run.
-pub async fn glance<L: Laboratory>(
+pub async fn linear_estimate<L: Laboratory>(
     lab: &mut L,
     inputs: &Inputs,
-) -> Result<Option<Vec<UnknownEstimate>>, L::Error> {
+) -> Result<Option<LinearEstimate>, L::Error> {
     let record = inputs.records.first().filter(|record| record.is_fitted());
     let (Some(record), Some(x)) = (record, &inputs.start) else {
         return Ok(None);
@@ -77,5 +90,20 @@ pub async fn glance<L: Laboratory>(
             profile: Vec::new(),
         }
     });
-    Ok(Some(estimate.collect()))
+    let jacobian = &fit.search.best().jacobian;
+    let derivatives = fit.model.space.axes().iter().enumerate().map(|(k, axis)| {
+        let unknown = &axis.unknown;
+        // the residual is measured less simulated
+        let coordinates = match unknown.scale {
+            Scale::Logarithmic => -1.0,
+            Scale::Linear => -2.0 / (unknown.upper - unknown.lower),
+        };
+        let column = jacobian.column(k) * coordinates;
+        on.metric.curves(&column.into_owned())
+    });
+    Ok(Some(LinearEstimate {
+        unknowns: estimate.collect(),
+        derivatives: derivatives.collect(),
+        channels: on.record.channels.iter().map(|own| own.curve).collect(),
+    }))
 }

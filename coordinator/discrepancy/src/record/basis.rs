@@ -101,6 +101,15 @@ impl Basis {
         }
     }
 
+    /// Returns the curve with the given basis coefficients, up to a constant where constants do not count; `row` is the index
+    /// of its channel in the group.
+    pub fn curve(&self, row: usize, entries: &[C]) -> Vec<f64> {
+        match self {
+            Self::Orders(orders) => orders.curve(entries),
+            Self::Samples(samples) => samples[row].curve(entries),
+        }
+    }
+
     /// Returns the variance of a basis coefficient of correlated noise relative to white noise of the same
     /// standard deviation: first-order autoregressive noise is stronger at low orders; innovations of samples
     /// are as strong as the noise itself.

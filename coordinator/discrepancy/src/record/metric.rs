@@ -275,6 +275,15 @@ impl Metric {
         out
     }
 
+    /// Returns the curves of which a whitened vector is the image, those of channels without an absolute zero up to a constant.
+    pub fn curves(&self, whitened: &DVector<f64>) -> Curves {
+        let entries = self.unwhiten(whitened);
+        self.by_channel(|block, row| {
+            let own = &entries[block.group.channels[row]];
+            block.group.basis.curve(row, own)
+        })
+    }
+
     /// Returns the basis coefficients (orders or innovations) of curves, by channel, without whitening.
     pub fn entries(&self, curves: &Curves) -> Spectra {
         self.by_channel(|block, row| {

@@ -222,8 +222,12 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         let found = found?;
         let best = &found.calibrated.best.genes;
         let seen = identifiability(bus, &run, best, &mut Silent, stop).await?;
-        run.folder
-            .write_json(IDENTIFIABILITY, &seen.unwrap_or_default())?;
+        let unknowns = seen.as_ref().map_or(&[][..], |seen| &seen.unknowns);
+        run.folder.write_json(IDENTIFIABILITY, &unknowns)?;
+        let kind = case::kind::of(&run.case);
+        if let Some((name, bytes)) = seen.and_then(|seen| kind.jacobian_file(&run.case, &seen)) {
+            run.folder.write(name, &bytes)?;
+        }
         Ok(found)
     })?;
     show(&run, &found, session.wall_s(&run), arguments.output.output)

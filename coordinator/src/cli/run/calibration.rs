@@ -1,6 +1,6 @@
 //! Work of a calibration: the search, then the comparison of the recommended with the best individual.
 use super::{diagnosis::inputs, opened::Run};
-use discrepancy::{diagnose::Inputs, identify::UnknownEstimate, thresholds::Thresholds};
+use discrepancy::{diagnose::Inputs, identify::LinearEstimate, thresholds::Thresholds};
 use protocol::case::Case;
 use search::strategy::{self, Settings};
 use study::{
@@ -85,7 +85,7 @@ pub(crate) async fn identifiability<E: Evaluator>(
     best: &[f64],
     watch: &mut impl Watch<StageView>,
     stop: &mut Stop,
-) -> anyhow::Result<Option<Vec<UnknownEstimate>>> {
+) -> anyhow::Result<Option<LinearEstimate>> {
     // the cycles of the records are in the case folder alone
     let Ok(loaded) = run.loaded() else {
         return Ok(None);

@@ -175,9 +175,9 @@ impl RunFolder {
 
     /// Writes a file of the run folder atomically: a concurrent reader finds either the old or the new
     /// content.
-    pub(crate) fn write(&self, name: &str, text: &str) -> anyhow::Result<()> {
+    pub(crate) fn write(&self, name: &str, content: impl AsRef<[u8]>) -> anyhow::Result<()> {
         let file = self.file(name);
-        let written = atomic_file::replace(&file, text.as_bytes());
+        let written = atomic_file::replace(&file, content.as_ref());
         written.with_context(|| format!("cannot write {}", file.display()))
     }
 

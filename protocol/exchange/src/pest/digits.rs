@@ -1,5 +1,9 @@
 //! Formatting of numbers for fields of limited width, with as many digits as fit.
 
+/// Relative error from which a field is so narrow that the zero before the point gives way to a digit: JSON does not allow
+/// that, and fixed columns of Fortran do.
+const ROUGH: f64 = 1e-4;
+
 /// Formats a value in at most `width` characters: exactly if possible, otherwise as accurately as the field
 /// allows; `None` if not even one digit fits.
 pub fn fit(value: f64, width: usize) -> Option<String> {
@@ -14,19 +18,31 @@ pub fn fit(value: f64, width: usize) -> Option<String> {
     {
         return Some(pointed(text, width));
     }
-    let rounded = (0..=17_usize).flat_map(|digits| {
-        let after = digits.saturating_sub(1);
-        let plain = format!("{value:.digits$}");
-        // the zero before the point is a digit less where there is no room
-        let bare = plain.replacen("0.", ".", usize::from(value.abs() < 1.0));
-        [plain, bare, format!("{value:.after$e}")]
-    });
-    let fitting = rounded.filter(|text| text.len() <= width && crate::number(text).is_some());
     let off = |text: &String| {
         text.parse::<f64>()
             .map_or(f64::INFINITY, |read| (read - value).abs())
     };
-    let best = fitting.min_by(|a, b| off(a).total_cmp(&off(b)).then(a.len().cmp(&b.len())))?;
+    let rounded = |is_bare: bool| {
+        let texts = (0..=17_usize).flat_map(move |digits| {
+            let after = digits.saturating_sub(1);
+            let plain = format!("{value:.digits$}");
+            let plain = if is_bare {
+                plain.replacen("0.", ".", 1)
+            } else {
+                plain
+            };
+            [plain, format!("{value:.after$e}")]
+        });
+        let fitting = texts.filter(|text| text.len() <= width && crate::number(text).is_some());
+        fitting.min_by(|a, b| off(a).total_cmp(&off(b)).then(a.len().cmp(&b.len())))
+    };
+    let best = rounded(false);
+    let is_rough = |text: &String| off(text) > ROUGH * value.abs();
+    let best = if value.abs() < 1.0 && best.as_ref().is_none_or(is_rough) {
+        rounded(true)
+    } else {
+        best
+    }?;
     // zero in place of a number that is none is no digit of it
     let lost = value != 0.0 && best.parse::<f64>().is_ok_and(|read| read == 0.0);
     (!lost).then(|| pointed(best, width))
@@ -60,6 +76,7 @@ mod tests {
             (0.0, 3, "0.0"),
             (0.0123, 6, "0.0123"),
             (0.0123, 5, ".0123"),
+            (0.219_308_635_869_093_13, 15, "0.2193086358691"),
             (-0.0123, 5, "-.012"),
         ] {
             assert_eq!(

@@ -6,6 +6,7 @@ mod control;
 mod digits;
 mod first_line;
 mod instruction;
+mod jacobian;
 mod report;
 mod template;
 
@@ -15,5 +16,6 @@ pub use control::{
 };
 pub use digits::fit;
 pub use instruction::Instructions;
+pub use jacobian::jacobian;
 pub use report::{ParRow, ReiRow, par, rei};
 pub use template::{Field, Template};
