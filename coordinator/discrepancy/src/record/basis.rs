@@ -13,6 +13,9 @@ type C = Complex<f64>;
 /// Maximum number of waves (Fourier orders) computed from a sequence of samples: model errors lie in the slow
 /// waves.
 const WAVES: usize = 240;
+/// Maximum number of channels of a record of one cycle in one group: a covariance matrix for each place of the abscissa took
+/// 3.2 GiB for 1,000 channels of 100 places.
+const MOST_TOGETHER: usize = 64;
 
 /// Channels of a record that share an abscissa, and the basis in which their curves are compared.
 #[derive(Clone, Debug)]
@@ -173,7 +176,11 @@ impl ChannelGroup {
                     && is_compared_by_orders(other) == is_compared_by_orders(own)
                     && other.offset == own.offset
             };
-            match groups.iter_mut().find(|(_, other)| alike(other)) {
+            // without cycles no covariance between channels is known, and that of a thousand would fill the memory
+            let has_room =
+                |channels: &[usize]| record.cycles.len() > 1 || channels.len() < MOST_TOGETHER;
+            let mut joined = groups.iter_mut();
+            match joined.find(|(channels, other)| has_room(channels) && alike(other)) {
                 Some((channels, _)) => channels.push(c),
                 None => groups.push((vec![c], own)),
             }
