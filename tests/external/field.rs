@@ -10,27 +10,25 @@ fn field(name: &str) -> Rig {
     rig
 }
 
-impl Rig {
-    /// Replaces text in a file of the input.
-    fn change(&self, file: &str, from: &str, to: &str) {
-        let path = self.file("f").join(file);
-        let text = fs::read_to_string(&path).unwrap();
-        assert!(text.contains(from), "{file}: {from}");
-        fs::write(path, text.replace(from, to)).unwrap();
-    }
+/// Replaces text in a file of the input.
+fn change(rig: &Rig, file: &str, from: &str, to: &str) {
+    let path = rig.file("f").join(file);
+    let text = fs::read_to_string(&path).unwrap();
+    assert!(text.contains(from), "{file}: {from}");
+    fs::write(path, text.replace(from, to)).unwrap();
+}
 
-    /// Imports the input's control file as `case`; returns its notes.
-    fn import(&self) -> String {
-        let made = self.object(&["case", "import", "f/m.pst", "case"]);
-        made["notes"].to_string()
-    }
+/// Imports the input's control file as `case`; returns its notes.
+fn import(rig: &Rig) -> String {
+    let made = rig.object(&["case", "import", "f/m.pst", "case"]);
+    made["notes"].to_string()
+}
 
-    /// Imports the input's control file, allows its program and descends; returns the result.
-    fn descent(&self) -> Value {
-        self.import();
-        self.done(&["allow", "case"]);
-        self.object(&["calibrate", "case", "--preset", "descent", "--run", "run"])
-    }
+/// Imports the input's control file, allows its program and descends; returns the result.
+fn descent(rig: &Rig) -> Value {
+    import(rig);
+    rig.done(&["allow", "case"]);
+    rig.object(&["calibrate", "case", "--preset", "descent", "--run", "run"])
 }
 
 /// Checks that a line was found: k, c and the objective.
@@ -54,14 +52,14 @@ fn a_field_too_narrow_for_its_difference_step_is_refused_with_the_width() {
     ] {
         assert!(said.contains(words), "{said}");
     }
-    rig.change("p.tpl", "~ k ~", "~ k   ~");
-    is_line(&rig.descent(), [("k", 0.02), ("c", 0.5)]);
+    change(&rig, "p.tpl", "~ k ~", "~ k   ~");
+    is_line(&descent(&rig), [("k", 0.02), ("c", 0.5)]);
 }
 
 #[test]
 fn one_sided_groups_are_limits() {
     let rig = field("one-sided");
-    let notes = rig.import();
+    let notes = import(&rig);
     for words in [
         "line 17: observation group `less_than`",
         "line 18: observation group `greater_than`",
@@ -77,11 +75,11 @@ fn one_sided_groups_are_limits() {
     }
     // only what exceeds its limit counts: 1.5 above 1, and 2.5 below 3
     let rig = field("one-sided");
-    rig.change("m.pst", "less_than", "l_t");
-    rig.change("m.pst", "greater_than", "g_t");
-    rig.change("m.pst", "y1 5 ", "y1 1 ");
-    rig.change("m.pst", "y4 2 ", "y4 7 ");
-    rig.import();
+    change(&rig, "m.pst", "less_than", "l_t");
+    change(&rig, "m.pst", "greater_than", "g_t");
+    change(&rig, "m.pst", "y1 5 ", "y1 1 ");
+    change(&rig, "m.pst", "y4 2 ", "y4 7 ");
+    import(&rig);
     rig.done(&["allow", "case"]);
     let simulated = rig.object(&["simulate", "case"]);
     let objective = simulated["objective"].as_f64().unwrap();
@@ -95,7 +93,7 @@ fn one_sided_groups_are_limits() {
 fn names_of_other_programs_stay() {
     let long = "pname:k_inst:0_ptype:gr_x:1.5";
     let rig = field("name-colon");
-    is_line(&rig.descent(), [(long, 2.0), ("offset[0]", 1.0)]);
+    is_line(&descent(&rig), [(long, 2.0), ("offset[0]", 1.0)]);
     for file in [
         "calibrated.par",
         "calibrated.toml",
@@ -111,9 +109,9 @@ fn names_of_other_programs_stay() {
     rig.done(&["export", "run"]);
     // an observation that is called as a parameter
     let rig = field("name-colon");
-    rig.change("m.pst", "y1 3", "offset[0] 3");
-    rig.change("y.ins", "!y1!", "!offset[0]!");
-    is_line(&rig.descent(), [(long, 2.0), ("offset[0]", 1.0)]);
+    change(&rig, "m.pst", "y1 3", "offset[0] 3");
+    change(&rig, "y.ins", "!y1!", "!offset[0]!");
+    is_line(&descent(&rig), [(long, 2.0), ("offset[0]", 1.0)]);
 }
 
 #[test]
@@ -121,8 +119,8 @@ fn words_that_pest_does_not_know_are_refused_by_line() {
     let rig = field("partrans");
     let said = rig.refused(&["case", "import", "f/m.pst", "case"]);
     assert!(said.contains("line 14: partrans = `logarithmic`"), "{said}");
-    rig.change("m.pst", "k logarithmic", "k log");
-    rig.change("m.pst", "g relative", "g relativ");
+    change(&rig, "m.pst", "k logarithmic", "k log");
+    change(&rig, "m.pst", "g relative", "g relativ");
     let said = rig.refused(&["case", "import", "f/m.pst", "case"]);
     assert!(said.contains("line 12: inctyp = `relativ`"), "{said}");
 }
@@ -135,20 +133,25 @@ fn byte_order_marks_are_no_text() {
         let text = fs::read_to_string(&path).unwrap();
         fs::write(path, format!("\u{feff}{text}")).unwrap();
     }
-    is_line(&rig.descent(), [("k", 2.0), ("c", 1.0)]);
+    is_line(&descent(&rig), [("k", 2.0), ("c", 1.0)]);
 }
 
 #[test]
 fn a_program_of_another_machine_is_a_note() {
     let rig = field("backslash");
-    let notes = rig.import();
+    let notes = import(&rig);
     assert!(notes.contains(r"no program `.\\run_model.exe`"), "{notes}");
     assert!(notes.contains("Windows program"), "{notes}");
     let said = rig.refused(&["allow", "case"]);
     assert!(said.contains("there is no such program"), "{said}");
     let rig = field("backslash");
-    rig.change("m.pst", r".\run_model.exe case.nam", "mf6-of-the-cluster");
-    let notes = rig.import();
+    change(
+        &rig,
+        "m.pst",
+        r".\run_model.exe case.nam",
+        "mf6-of-the-cluster",
+    );
+    let notes = import(&rig);
     assert!(notes.contains("no program `mf6-of-the-cluster`"), "{notes}");
 }
 
@@ -157,20 +160,19 @@ fn many_observations_in_many_groups_are_read() {
     for (groups, observations) in [(80, 8000), (1000, 20_000)] {
         let rig = field("bom");
         let names = (0..observations).map(|at| format!("o{at} 1 1.0 g{}\n", at % groups));
-        let listed: String = (0..groups).map(|at| format!("g{at}\n")).collect();
+        let listed: Vec<String> = (0..groups).map(|at| format!("g{at}")).collect();
         let observed: String = names.collect();
         let text = fs::read_to_string(rig.file("f/m.pst")).unwrap();
         let text = text.replace("2 4 1 0 1", &format!("2 {observations} 1 0 {groups}"));
         let (before, rest) = text.split_once("* observation groups").unwrap();
         let (_, after) = rest.split_once("* model command").unwrap();
         let text = format!(
-            "{before}* observation groups\n{listed}* observation data\n{observed}* model command{after}"
+            "{before}* observation groups\n{}\n* observation data\n{observed}* model command{after}",
+            listed.join("\n")
         );
         fs::write(rig.file("f/m.pst"), text).unwrap();
-        let read: String = (0..observations)
-            .map(|at| format!("l1 !o{at}!\n"))
-            .collect();
-        fs::write(rig.file("f/y.ins"), format!("pif ~\n{read}")).unwrap();
+        let read: Vec<String> = (0..observations).map(|at| format!("l1 !o{at}!")).collect();
+        fs::write(rig.file("f/y.ins"), format!("pif ~\n{}\n", read.join("\n"))).unwrap();
         let made = rig.object(&["case", "import", "f/m.pst", "case"]);
         assert_eq!(made["observations"], observations);
     }
@@ -179,13 +181,18 @@ fn many_observations_in_many_groups_are_read() {
 #[test]
 fn tables_of_a_control_file_have_any_separator() {
     let rig = field("external-semicolons");
-    is_line(&rig.descent(), [("k", 2.0), ("c", 1.0)]);
+    is_line(&descent(&rig), [("k", 2.0), ("c", 1.0)]);
     let rig = field("external-sep");
-    is_line(&rig.descent(), [("k", 2.0), ("c", 1.0)]);
+    is_line(&descent(&rig), [("k", 2.0), ("c", 1.0)]);
     let rig = field("external-sep");
-    rig.change("m.pst", "par.csv sep w", "par.csv sep w missing_value ?");
-    rig.change("par.csv", "1 0 1 \n", "? ? 1 ?\n");
-    is_line(&rig.descent(), [("k", 2.0), ("c", 1.0)]);
+    change(
+        &rig,
+        "m.pst",
+        "par.csv sep w",
+        "par.csv sep w missing_value ?",
+    );
+    change(&rig, "par.csv", "1 0 1 \n", "? ? 1 ?\n");
+    is_line(&descent(&rig), [("k", 2.0), ("c", 1.0)]);
 }
 
 #[test]
@@ -193,7 +200,7 @@ fn separated_thousands_are_refused() {
     let rig = field("thousands");
     let said = rig.refused(&["case", "check", "f"]);
     assert!(said.contains("row 11, column `load_lb`: `1,008`"), "{said}");
-    rig.change("thousands.tsv", ",", "");
+    change(&rig, "thousands.tsv", ",", "");
     rig.done(&["case", "check", "f"]);
 }
 
@@ -216,7 +223,8 @@ fn drivers_of_dakota_get_its_files() {
         assert!(said.contains(line), "{said}");
     }
     let rig = field("dakota-components");
-    rig.change(
+    change(
+        &rig,
         "case.toml",
         "dakota = \"standard\"",
         "dakota = \"standard\", components = [\"mesh 1.exo\"]",
@@ -231,12 +239,13 @@ fn drivers_of_dakota_get_its_files() {
 fn drivers_that_return_residuals_have_the_target_zero() {
     let rig = field("zero-target");
     rig.done(&["case", "check", "f"]);
-    rig.change("case.toml", "offset = \"fixed\"", "offset = \"free\"");
+    change(&rig, "case.toml", "offset = \"fixed\"", "offset = \"free\"");
     let said = rig.refused(&["case", "check", "f"]);
     assert!(said.contains("offset = \"fixed\""), "{said}");
     let runs = |gradients: bool| {
         let rig = field("zero-target");
-        rig.change(
+        change(
+            &rig,
             "rosen.py",
             "open(sys.argv[2],'w').write('FAIL\\n')",
             "a=[l.split()[0] for l in L if 'ASV_' in l]\n\
@@ -245,7 +254,8 @@ fn drivers_that_return_residuals_have_the_target_zero() {
              open(sys.argv[2],'w').write(t)",
         );
         if gradients {
-            rig.change(
+            change(
+                &rig,
                 "case.toml",
                 "dakota = [\"f1\", \"f2\"]",
                 "dakota = [\"f1\", \"f2\"], gradients = true",
@@ -299,8 +309,13 @@ fn tables_of_programs_are_read_as_records_are() {
     rig.done(&["allow", "f"]);
     let plain = rig.object(&["simulate", "f"])["objective"].clone();
     // the same table in blanks, with a preamble and units, in Latin-1
-    rig.change("m.py", "o.write(\"t;y\\n\")", "o=open(\"out.csv\",\"w\",encoding=\"latin-1\"); o.write(\"Solver, 2\u{b5}\\n\\nt  y\\ns  N\\n\")");
-    rig.change("m.py", "%.3f;%.6f\\n", "%.3f  %.6f\\n\\n");
+    change(
+        &rig,
+        "m.py",
+        "o.write(\"t;y\\n\")",
+        "o=open(\"out.csv\",\"w\",encoding=\"latin-1\"); o.write(\"Solver, 2\u{b5}\\n\\nt  y\\ns  N\\n\")",
+    );
+    change(&rig, "m.py", "%.3f;%.6f\\n", "%.3f  %.6f\\n\\n");
     rig.done(&["allow", "f"]);
     assert_eq!(rig.object(&["simulate", "f"])["objective"], plain);
 }
@@ -312,7 +327,7 @@ fn records_may_have_blanks_preambles_and_units() {
     let rig = field("preamble-units");
     let said = rig.refused(&["case", "check", "f"]);
     assert!(said.contains("row 17, column `ms`: 0"), "{said}");
-    rig.change("case.toml", "at = \"ms\"", "at = \"Number\"");
+    change(&rig, "case.toml", "at = \"ms\"", "at = \"Number\"");
     rig.done(&["case", "check", "f"]);
 }
 

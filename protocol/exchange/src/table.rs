@@ -106,7 +106,7 @@ impl Separator {
 
 /// Numbers of the lines at ascending positions of a text.
 struct Lines<'a> {
-    text: &'a [u8],
+    text: &'a str,
     counted: usize,
     line: usize,
 }
@@ -114,7 +114,7 @@ struct Lines<'a> {
 impl<'a> Lines<'a> {
     const fn new(text: &'a str) -> Self {
         Self {
-            text: text.as_bytes(),
+            text,
             counted: 0,
             line: 1,
         }
@@ -123,14 +123,10 @@ impl<'a> Lines<'a> {
     /// Returns the number of the first line with content from a position on: the position of a record is that behind the
     /// record before it, with the empty lines between the two.
     fn of(&mut self, from: usize) -> usize {
-        let breaks = |text: &[u8]| text.iter().filter(|byte| **byte == b'\n').count();
         let rest = self.text.get(from..).unwrap_or_default();
-        let empty = rest
-            .iter()
-            .take_while(|byte| matches!(byte, b'\n' | b'\r'))
-            .count();
-        let at = from + empty;
-        self.line += breaks(self.text.get(self.counted..at).unwrap_or_default());
+        let at = self.text.len() - rest.trim_start_matches(['\n', '\r']).len();
+        let passed = self.text.get(self.counted..at).unwrap_or_default();
+        self.line += passed.matches('\n').count();
         self.counted = at;
         self.line
     }
@@ -225,8 +221,8 @@ impl Table {
 
     /// Returns the text of a cell; an empty text if the row is too short.
     pub fn cell(&self, row: usize, column: usize) -> &str {
-        let cells = self.rows.get(row).map_or(0..0, |row| row.cells.clone());
-        let Some(at) = cells.clone().nth(column) else {
+        let mut cells = self.rows.get(row).map_or(0..0, |row| row.cells.clone());
+        let Some(at) = cells.nth(column) else {
             return "";
         };
         let from = at.checked_sub(1).map_or(0, |before| self.ends[before]);

@@ -38,12 +38,13 @@ pub(super) fn jacobian(case: &Case, estimate: &LinearEstimate) -> Option<(&'stat
     let mut observations = Vec::new();
     for own in &estimate.channels {
         let at = *channels.get(*own)?;
-        match external.curves.get(at)? {
-            ChannelSource::Named(names) if case.channels.get(at)?.is_absolute() => {
-                observations.extend(names.iter().cloned());
-            }
-            _ => return None,
+        let ChannelSource::Named(names) = external.curves.get(at)? else {
+            return None;
+        };
+        if !case.channels.get(at)?.is_absolute() {
+            return None;
         }
+        observations.extend(names.iter().cloned());
     }
     let unknowns = estimate.unknowns.iter();
     let parameters: Vec<String> = unknowns.map(|own| own.name.clone()).collect();

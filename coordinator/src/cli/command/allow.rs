@@ -58,6 +58,20 @@ struct AllowOutput<'a> {
     written: bool,
 }
 
+/// Returns the error for a case whose program this machine does not have.
+fn no_program(case: &Path, entry: &allow::AllowEntry) -> Problem {
+    Problem {
+        message: format!(
+            "{}: `model.command` = \"{}\": there is no such program on this machine",
+            case.join("case.toml").display(),
+            entry.program.display()
+        ),
+        remedy: "install it, or correct the name: a program by name or absolute path, or a file of the case, such as \
+                 \"./model.sh\""
+            .to_owned(),
+    }
+}
+
 /// Shows the allow list entry that the case needs and, without `--dry-run`, writes it.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let EntryProposal {
@@ -67,17 +81,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         files,
     } = propose_entry(&arguments.case)?;
     if !is_there {
-        return Err(Problem {
-            message: format!(
-                "{}: `model.command` = \"{}\": there is no such program on this machine",
-                arguments.case.join("case.toml").display(),
-                entry.program.display()
-            ),
-            remedy: "install it, or correct the name: a program by name or absolute path, or a file of the case, such as \
-                     \"./model.sh\""
-                .to_owned(),
-        }
-        .into());
+        return Err(no_program(&arguments.case, &entry).into());
     }
     let path = allow::path();
     let mut allowed = allow::read(&path).map_err(|problem| Problem {
@@ -132,11 +136,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
             remedy: "set HORSEHEAD_ALLOW to the path of a writable file".to_owned(),
         })?;
     }
-    let words = if arguments.dry_run {
-        "would be written to"
-    } else {
-        "written to"
-    };
+    let words = ["written to", "would be written to"][usize::from(arguments.dry_run)];
     let table = || {
         let list: String = files.iter().flat_map(|file| ["#   ", file, "\n"]).collect();
         format!(

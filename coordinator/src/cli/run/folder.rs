@@ -166,7 +166,7 @@ impl RunFolder {
         effects: &[CaseEffect],
         about: &str,
     ) -> anyhow::Result<()> {
-        self.write(GENES, &write_genes(case, genes, effects, about))?;
+        self.write(GENES, write_genes(case, genes, effects, about))?;
         if let Some((name, text)) = case::kind::of(case).gene_file(case, genes) {
             self.write(name, &text)?;
         }

@@ -15,7 +15,7 @@ pub(super) struct Group<'a> {
     /// Name of the channel.
     pub(super) name: String,
     /// Name of the observation group.
-    group: &'a str,
+    title: &'a str,
     /// Whether the group's observations have positive weights, so that they form a measured record.
     pub(super) is_measured: bool,
     pub(super) rows: Vec<Row<'a>>,
@@ -49,7 +49,7 @@ pub(super) fn groups(control: &Control) -> Vec<Group<'_>> {
             Some(own) => own.rows.push(row),
             None => all.push(Group {
                 name: sanitized(group),
-                group,
+                title: group,
                 is_measured,
                 rows: vec![row],
             }),
@@ -57,7 +57,7 @@ pub(super) fn groups(control: &Control) -> Vec<Group<'_>> {
     }
     // a group of which a part counts is two channels
     for group in all.iter_mut().filter(|it| !it.is_measured) {
-        if known.contains_key(&(group.group, true)) {
+        if known.contains_key(&(group.title, true)) {
             group.name.push_str("_predicted");
         }
     }
@@ -117,8 +117,8 @@ pub(super) fn tables(groups: &[Group<'_>], condition: &str) -> ArrayOfTables {
 fn channel(group: &Group<'_>, condition: &str) -> Table {
     let mut table = Table::new();
     table.insert("name", value(&group.name));
-    if group.name != group.group {
-        table.insert("title", value(group.group));
+    if group.name != group.title {
+        table.insert("title", value(group.title));
     }
     table.insert("unit", value("1"));
     table.insert("condition", value(condition));
@@ -128,7 +128,7 @@ fn channel(group: &Group<'_>, condition: &str) -> Table {
     if group.is_measured {
         // weights are taken for inverse standard deviations
         table.insert("noise", value(1.0));
-        if let Some(side) = Side::of_group(group.group) {
+        if let Some(side) = Side::of_group(group.title) {
             let limit = match side {
                 Side::AtMost => "at_most",
                 Side::AtLeast => "at_least",

@@ -66,11 +66,11 @@ fn groups_and_ties(control: &Control) -> Result<(), Fault> {
             let found = format!("group `{group}` of {name}");
             return Err((found, "one of the parameter groups"));
         }
-        if let Transform::Tied(to) = &parameter.transform {
-            if !varying.contains(to) {
-                let found = format!("{name} tied to `{to}`");
-                return Err((found, "tied to a parameter that varies"));
-            }
+        if let Transform::Tied(to) = &parameter.transform
+            && !varying.contains(to)
+        {
+            let found = format!("{name} tied to `{to}`");
+            return Err((found, "tied to a parameter that varies"));
         }
     }
     Ok(())

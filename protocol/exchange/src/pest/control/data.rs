@@ -95,7 +95,7 @@ pub(super) fn read(lines: &Lines, open: Open<'_>) -> Result<Control, Problem> {
         .filter(|row| row.word_or("forcen", "switch") != "switch");
     note_rows(
         &mut control,
-        differences.collect(),
+        &differences.collect::<Vec<_>>(),
         "FORCEN has no effect: differences are one-sided until the search converges, and central then",
     );
     unused_columns(&mut control, &groups, &GROUP);
@@ -226,7 +226,7 @@ fn group(row: &Row) -> Result<ParameterGroup, Problem> {
 }
 
 /// Adds a note on rows of the control file that have something in common, if there are any.
-fn note_rows(control: &mut Control, rows: Vec<&Row>, note: &str) {
+fn note_rows(control: &mut Control, rows: &[&Row], note: &str) {
     let more = match rows.len() {
         0 | 1 => String::new(),
         count => format!(" and {} more", count - 1),
@@ -321,7 +321,7 @@ fn parameters(
     let commands = |row: &&Row| row.word_or("dercom", "1") != "1";
     note_rows(
         control,
-        all.iter().filter(commands).collect(),
+        &all.iter().filter(commands).collect::<Vec<_>>(),
         "DERCOM has no effect: every derivative is taken from runs of the model command line",
     );
     unused_columns(control, &all, &PARAMETER);
