@@ -30,11 +30,13 @@ pub fn check_program_names(
 ) -> Result<(), CaseError> {
     let plain = |c: char| c.is_ascii_graphic() && !",\"'`{}=#\\".contains(c);
     check_list(document, (list, what), names, |way, name, is_there| {
-        if name.is_empty() || !name.chars().all(plain) {
+        // the key under which gene files state effects
+        let is_key = name == "effects";
+        if name.is_empty() || is_key || !name.chars().all(plain) {
             return Err(document.field(
                 way,
                 format!("\"{name}\""),
-                "a name without blanks, commas, quotes, braces, `=`, `#` and `\\`",
+                "a name other than `effects`, without blanks, commas, quotes, braces, `=`, `#` and `\\`",
                 "the name is a key of gene files and is typed on command lines, as `stiffness`",
             ));
         }

@@ -163,10 +163,7 @@ fn place(
         let spare = header.iter().map(String::as_str);
         let spare = spare.filter(|name| !needed.contains(name));
         let help = super::document::nearest(wanted, spare).map_or_else(
-            || {
-                "add the column; the first row must name the columns, separated by commas"
-                    .to_owned()
-            },
+            || "add the column; one of the first 200 lines must name the columns".to_owned(),
             |near| format!("did you mean `{near}`? rename it, or add the column"),
         );
         return Err(CaseError::Column {

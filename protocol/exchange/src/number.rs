@@ -14,16 +14,13 @@ pub fn number(text: &str) -> Option<f64> {
     }
     let mut usual = text.replace(['d', 'D', 'E'], "e");
     if !usual.contains('e') {
-        // a sign behind a digit or a point begins an exponent
-        let before = |at: usize| usual.get(..at)?.chars().next_back();
-        let sign = usual
-            .char_indices()
-            .filter(|(_, letter)| matches!(letter, '+' | '-'))
-            .find(|(at, _)| {
-                before(*at).is_some_and(|letter| letter.is_ascii_digit() || letter == '.')
-            });
-        if let Some((at, _)) = sign {
-            usual.insert(at, 'e');
+        // a sign and three digits behind a number with a point are an exponent; `12-05` is a date
+        let sign = usual.rfind(['+', '-']).filter(|at| *at > 0);
+        if let Some((mantissa, exponent)) = sign.map(|at| usual.split_at(at)) {
+            if !mantissa.contains('.') || exponent.len() != 4 {
+                return None;
+            }
+            usual.insert(mantissa.len(), 'e');
         }
     }
     usual.parse().ok().filter(|value: &f64| value.is_finite())
@@ -49,7 +46,8 @@ mod tests {
             assert_eq!(number(text), Some(value), "{text}");
         }
         for text in [
-            "", "NaN", "inf", "1e999", "1.0x", "1 2", "--1", "e5", "1e", "-", "0x10", "1_000",
+            "", "1-2", "12-05", "1-102", "1.5-02", "NaN", "inf", "1e999", "1.0x", "1 2", "--1",
+            "e5", "1e", "-", "0x10", "1_000",
         ] {
             assert_eq!(number(text), None, "{text}");
         }

@@ -1,14 +1,15 @@
 //! Reading of tables with a header: records of loggers and results of programs.
 use crate::{Problem, number, problem::clip};
-use std::ops::Range;
+use std::{borrow::Cow, ops::Range};
 
 /// Number of lines among which the header is searched for.
 const PREAMBLE: usize = 200;
 
 /// Table of text cells under a header.
 ///
-/// The header is the first line that contains all needed names, separated by commas, semicolons, tabs or blanks, optionally
-/// after a `#`; lines before it are a preamble of the program that wrote the table. A row of units below the header is left
+/// Columns stand between commas, semicolons, tabs or blanks; a cell in double quotes may contain them. The header is the first
+/// line that contains all needed names, optionally after a `#` or `%`, above a row of the same length with numbers in the
+/// needed columns; lines before it are a preamble of the program that wrote the table. A row of units below the header is left
 /// out, as are empty rows.
 #[derive(Clone, Debug)]
 pub struct Table {
@@ -20,6 +21,8 @@ pub struct Table {
     text: String,
     /// End of each cell in the text.
     ends: Vec<usize>,
+    /// Indices of the needed columns that the table has.
+    needed: Vec<usize>,
     separator: Separator,
 }
 
@@ -48,98 +51,129 @@ pub struct CellProblem {
 /// Character between the cells of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Separator {
-    Byte(u8),
+    Character(char),
     Blanks,
 }
 
 impl Separator {
     const ALL: [Self; 4] = [
-        Self::Byte(b','),
-        Self::Byte(b';'),
-        Self::Byte(b'\t'),
+        Self::Character(','),
+        Self::Character(';'),
+        Self::Character('\t'),
         Self::Blanks,
     ];
 
     fn is_in(self, line: &str) -> bool {
         match self {
-            Self::Byte(byte) => line.as_bytes().contains(&byte),
+            Self::Character(character) => line.contains(character),
             Self::Blanks => true,
         }
     }
 
-    /// Calls a function for every row of a text, with the number of its line in the text and its cells; stops when it
-    /// returns false.
-    fn each_row(
-        self,
-        text: &str,
-        mut row: impl FnMut(usize, &mut dyn Iterator<Item = &str>) -> bool,
-    ) {
+    /// Calls a function for every cell of a line, without the blanks and quotes about it.
+    fn each_cell(self, line: &str, mut cell: impl FnMut(&str)) {
         match self {
-            Self::Byte(byte) => {
+            Self::Character(character) if !line.contains('"') => {
+                line.split(character).for_each(|text| cell(text.trim()));
+            }
+            Self::Blanks if !line.contains('"') => line.split_whitespace().for_each(cell),
+            Self::Character(_) | Self::Blanks => {
+                let (byte, line) = match self {
+                    Self::Character(character) => (character, Cow::Borrowed(line)),
+                    Self::Blanks => (' ', Cow::Owned(line.replace('\t', " "))),
+                };
                 let mut reader = csv::ReaderBuilder::new()
                     .has_headers(false)
-                    .flexible(true)
-                    .delimiter(byte)
+                    .delimiter(u8::try_from(byte).unwrap_or(b','))
                     .trim(csv::Trim::All)
-                    .from_reader(text.as_bytes());
-                let (mut lines, mut record) = (Lines::new(text), csv::StringRecord::new());
+                    .from_reader(line.as_bytes());
                 // text in memory can neither fail to be read nor be anything but UTF-8
-                while reader.read_record(&mut record).unwrap_or(false) {
-                    let at = record.position().map_or(0, csv::Position::byte);
-                    let line = lines.of(usize::try_from(at).unwrap_or(usize::MAX));
-                    if !row(line, &mut record.iter()) {
-                        return;
-                    }
-                }
-            }
-            Self::Blanks => {
-                for (at, line) in text.lines().enumerate() {
-                    let mut words = line.split_whitespace().map(|word| word.trim_matches('"'));
-                    if !row(at + 1, &mut words) {
-                        return;
-                    }
-                }
+                let record = reader.records().next().and_then(Result::ok);
+                let cells = record.unwrap_or_default();
+                let filled = cells.iter().map(|text| text.trim_matches('"').trim());
+                let is_kept = |text: &&str| self != Self::Blanks || !text.is_empty();
+                filled.filter(is_kept).for_each(cell);
             }
         }
     }
+
+    fn names(self, line: &str) -> Vec<String> {
+        let line = line.trim_start_matches(['#', '%', ' ', '\t']);
+        let mut names = Vec::new();
+        self.each_cell(line.trim_end(), |cell| names.push(cell.to_owned()));
+        while names.last().is_some_and(String::is_empty) {
+            names.pop();
+        }
+        names
+    }
+
+    /// Parses a cell as a finite number. A decimal comma is accepted where commas do not separate cells, and blanks behind
+    /// a sign.
+    fn number(self, cell: &str) -> Option<f64> {
+        let signed = cell.strip_prefix(['+', '-']).and_then(|rest| {
+            let sign = cell.get(..1)?;
+            rest.starts_with(' ')
+                .then(|| format!("{sign}{}", rest.trim_start()))
+        });
+        let plain = signed.as_deref().unwrap_or(cell);
+        if self == Self::Character(',') || !plain.contains(',') {
+            return number(plain);
+        }
+        number(&plain.replacen(',', ".", 1))
+    }
 }
 
-/// Numbers of the lines at ascending positions of a text.
-struct Lines<'a> {
-    text: &'a str,
-    counted: usize,
-    line: usize,
-}
+/// Header of a table: index of its line, separator and names.
+type Header = (usize, Separator, Vec<String>);
 
-impl<'a> Lines<'a> {
-    const fn new(text: &'a str) -> Self {
-        Self {
-            text,
-            counted: 0,
-            line: 1,
+/// Finds the header; without a line that holds all needed names it is the first line that is not empty.
+fn header(text: &str, needed: &[&str]) -> Option<Header> {
+    let lines = || {
+        let lines = text.lines().enumerate();
+        lines.filter(|(_, line)| !line.trim().is_empty())
+    };
+    let candidate = |(at, line): (usize, &str)| -> Option<Header> {
+        let present = Separator::ALL.into_iter().filter(|it| it.is_in(line));
+        let named = present.map(|separator| (at, separator, separator.names(line)));
+        let has_all = |names: &[String]| needed.iter().all(|name| names.iter().any(|n| n == name));
+        named.into_iter().find(|(_, _, names)| has_all(names))
+    };
+    // whether a line has the form of the rows below a header
+    let is_row = |(_, separator, names): &Header, line: &str| {
+        let mut cells = Vec::new();
+        separator.each_cell(line, |cell| cells.push(cell.to_owned()));
+        let filled = cells.iter().rposition(|cell| !cell.is_empty());
+        let is_number = |name: &&str| {
+            let at = names.iter().position(|own| own == name);
+            let cell = at.and_then(|at| cells.get(at));
+            cell.is_some_and(|cell| separator.number(cell).is_some())
+        };
+        cells.len() >= names.len()
+            && filled.is_some_and(|last| last < names.len())
+            && needed.iter().all(is_number)
+    };
+    let mut first: Option<Header> = None;
+    for (at, line) in lines().take(PREAMBLE) {
+        let Some(found) = candidate((at, line)) else {
+            continue;
+        };
+        let mut below = lines().skip_while(|(line, _)| *line <= at);
+        let (next, after) = (below.next(), below.next());
+        let is_title = next.is_some_and(|next| candidate(next).is_some()) && !needed.is_empty();
+        let mut rows = next.into_iter().chain(after.filter(|_| !is_title));
+        if rows.any(|(_, line)| is_row(&found, line)) {
+            return Some(found);
+        }
+        // where no candidate stands above numbers, the first that is no title has to say so
+        if first.is_none() && !is_title {
+            first = Some(found);
         }
     }
-
-    /// Returns the number of the first line with content from a position on: the position of a record is that behind the
-    /// record before it, with the empty lines between the two.
-    fn of(&mut self, from: usize) -> usize {
-        let rest = self.text.get(from..).unwrap_or_default();
-        let at = self.text.len() - rest.trim_start_matches(['\n', '\r']).len();
-        let passed = self.text.get(self.counted..at).unwrap_or_default();
-        self.line += passed.matches('\n').count();
-        self.counted = at;
-        self.line
-    }
-}
-
-fn header_names(line: &str, separator: Separator) -> Vec<String> {
-    let line = line.trim_start_matches(['\u{feff}', '#', ' ']);
-    let mut names = Vec::new();
-    separator.each_row(line, |_, cells| {
-        names.extend(cells.map(str::to_owned));
-        false
-    });
-    names
+    first.or_else(|| {
+        let (at, line) = lines().next()?;
+        let separator = Separator::ALL.into_iter().find(|it| it.is_in(line))?;
+        Some((at, separator, separator.names(line)))
+    })
 }
 
 impl Table {
@@ -147,53 +181,51 @@ impl Table {
     /// first line that is not empty is the header.
     pub fn parse(text: &str, needed: &[&str]) -> Self {
         let text = text.trim_start_matches('\u{feff}');
-        let has_all = |names: &[String]| needed.iter().all(|name| names.iter().any(|n| n == name));
-        let filled = || {
-            let lines = text.split_inclusive('\n').enumerate();
-            lines.filter(|(_, line)| !line.trim().is_empty())
+        // line ends of old Macintosh programs
+        let text = if text.contains('\r') && !text.contains('\n') {
+            Cow::Owned(text.replace('\r', "\n"))
+        } else {
+            Cow::Borrowed(text)
         };
-        let header = filled().take(PREAMBLE).find_map(|(at, line)| {
-            let mut between = Separator::ALL.into_iter();
-            let found = between.find(|it| it.is_in(line) && has_all(&header_names(line, *it)))?;
-            Some((at, found))
-        });
-        let header = header.or_else(|| {
-            let (at, line) = filled().next()?;
-            let mut between = Separator::ALL.into_iter();
-            Some((at, between.find(|it| it.is_in(line))?))
-        });
         let mut table = Self {
             names: Vec::new(),
             rows: Vec::new(),
             text: String::new(),
             ends: Vec::new(),
-            separator: Separator::Byte(b','),
+            needed: Vec::new(),
+            separator: Separator::Blanks,
         };
-        let Some((at, separator)) = header else {
+        let Some((at, separator, names)) = header(&text, needed) else {
             return table;
         };
-        let mut lines = text.split_inclusive('\n');
-        let before: usize = lines.by_ref().take(at).map(str::len).sum();
-        let line = lines.next().unwrap_or_default();
-        table.names = header_names(line, separator);
-        table.separator = separator;
-        let rest = text.get(before + line.len()..).unwrap_or_default();
-        separator.each_row(rest, |line, cells| {
+        (table.separator, table.names) = (separator, names);
+        table.needed = needed
+            .iter()
+            .filter_map(|name| table.column(name))
+            .collect();
+        for (index, line) in text.lines().enumerate().skip(at + 1) {
             let (first, empty) = (table.ends.len(), table.text.len());
-            for cell in cells {
+            separator.each_cell(line, |cell| {
                 table.text.push_str(cell);
                 table.ends.push(table.text.len());
-            }
-            if table.text.len() > empty {
-                let line = at + 1 + line;
-                let cells = first..table.ends.len();
-                table.rows.push(Row { line, cells });
-            } else {
+            });
+            if table.text.len() == empty {
                 table.ends.truncate(first);
+                continue;
             }
-            true
-        });
-        if table.has_units(needed) {
+            // separators behind the last column
+            let ends = |at: usize| table.ends.get(at).copied();
+            let mut length = table.ends.len();
+            while length > first + table.names.len() && ends(length - 2) == ends(length - 1) {
+                length -= 1;
+            }
+            table.ends.truncate(length);
+            table.rows.push(Row {
+                line: index + 1,
+                cells: first..length,
+            });
+        }
+        if table.has_units() {
             table.rows.remove(0);
         }
         table
@@ -230,49 +262,35 @@ impl Table {
     }
 
     /// Returns the number of cells in a row.
-    fn width(&self, row: usize) -> usize {
+    pub fn width(&self, row: usize) -> usize {
         self.rows.get(row).map_or(0, |row| row.cells.len())
     }
 
-    /// Returns whether a comma separates the cells, so that numbers have decimal points.
-    pub fn is_comma_separated(&self) -> bool {
-        self.separator == Separator::Byte(b',')
+    /// Returns whether blanks separate the cells, so that a row cannot have an empty one.
+    pub fn is_blank_separated(&self) -> bool {
+        self.separator == Separator::Blanks
     }
 
     /// Returns whether the first row holds the units of the needed columns: words in all of them, above numbers.
-    fn has_units(&self, needed: &[&str]) -> bool {
-        /// Words that loggers write in place of a lost value.
-        const LOST: [&str; 8] = ["nan", "inf", "+inf", "-inf", "na", "n/a", "null", "none"];
-        let all = |of: &dyn Fn(usize) -> bool| {
-            let mut columns = needed.iter().filter_map(|name| self.column(name));
-            columns.all(of)
+    fn has_units(&self) -> bool {
+        /// Parts of words that loggers and programs write in place of a lost value: `-nan`, `1.#QNAN`, `***`, `N/A`.
+        const LOST: [&str; 8] = ["nan", "inf", "n/a", "null", "none", "#", "*", "err"];
+        let is_word = |column: &usize| {
+            let cell = self.cell(0, *column).to_lowercase();
+            let is_lost = cell == "na" || LOST.iter().any(|part| cell.contains(part));
+            let plain = cell.trim_start_matches(['+', '-', '.', ' ']);
+            let is_numeric = plain.starts_with(|letter: char| letter.is_ascii_digit());
+            !cell.is_empty() && !is_lost && !is_numeric
         };
-        let is_word = |column| {
-            let cell = self.cell(0, column);
-            let is_lost = LOST.contains(&cell.to_lowercase().as_str());
-            !cell.is_empty() && !is_lost && self.number(cell).is_none()
+        let is_number = |column: &usize| {
+            let cell = self.cell(1, *column);
+            self.separator.number(cell).is_some()
         };
-        !needed.is_empty()
+        !self.needed.is_empty()
             && self.rows.len() > 1
             && self.width(0) == self.names.len()
-            && all(&is_word)
-            && all(&|column| self.number(self.cell(1, column)).is_some())
-    }
-
-    /// Parses a cell as a finite number. A decimal comma is accepted where commas do not separate cells, and blanks behind
-    /// a sign.
-    fn number(&self, cell: &str) -> Option<f64> {
-        let plain = cell.trim();
-        let signed = plain.strip_prefix(['+', '-']).and_then(|rest| {
-            let sign = plain.get(..1)?;
-            rest.starts_with(' ')
-                .then(|| format!("{sign}{}", rest.trim_start()))
-        });
-        let plain = signed.as_deref().unwrap_or(plain);
-        if self.is_comma_separated() || !plain.contains(',') {
-            return number(plain);
-        }
-        number(&plain.replacen(',', ".", 1))
+            && self.needed.iter().all(is_word)
+            && self.needed.iter().all(is_number)
     }
 
     /// Returns the numbers of a column in the given rows.
@@ -294,7 +312,9 @@ impl Table {
         for &row in rows {
             let length = self.width(row);
             if length != self.names.len() {
-                let remedy = if self.is_comma_separated() && length > self.names.len() {
+                let remedy = if self.separator == Separator::Character(',')
+                    && length > self.names.len()
+                {
                     "a decimal comma cuts a cell in two: write decimal points, or separate the cells by semicolons"
                 } else {
                     "the row is cut off or has a stray separator: correct or remove it"
@@ -308,7 +328,7 @@ impl Table {
                 });
             }
             let cell = self.cell(row, column);
-            let value = self.number(cell).ok_or_else(|| {
+            let value = self.separator.number(cell).ok_or_else(|| {
                 let remedy = if grouped(cell, ',') || grouped(cell, '.') {
                     THOUSANDS
                 } else if cell.is_empty() {
@@ -337,8 +357,11 @@ impl Table {
         }
     }
 
-    /// Returns whether commas or points in a column separate thousands: all numbers that have one look like that, and either
-    /// the table has the other mark for its decimals, or the column does not jump when they are read so.
+    /// Returns whether commas or points in a column separate thousands: all numbers that have one look like that, and
+    ///
+    /// - the needed columns have the other mark for their decimals, or
+    /// - a comma, that whole numbers stand beside them: a program that writes decimals with a comma writes `0,000`; or
+    /// - a point, that the numbers lie closer together when read so, as 995 and 1.005 do.
     fn separates_thousands(&self, column: usize, rows: &[usize], read: &[f64]) -> bool {
         [(',', '.'), ('.', ',')].into_iter().any(|(mark, other)| {
             let cells = || rows.iter().map(|row| self.cell(*row, column));
@@ -346,17 +369,19 @@ impl Table {
             if marked().next().is_none() || !marked().all(|cell| grouped(cell, mark)) {
                 return false;
             }
+            if mark == '.' {
+                let whole = cells().any(|cell| !cell.contains([mark, other]));
+                let joined = cells().map(|cell| number(&cell.replace(mark, "")));
+                let joined: Option<Vec<f64>> = joined.collect();
+                return whole && joined.is_some_and(|joined| ratio(&joined) < ratio(read));
+            }
             let is_decimal = |cell: &str| {
-                cell.contains(other) && !cell.contains(mark) && self.number(cell).is_some()
+                let has_point = cell.contains(other) && !cell.contains(mark);
+                has_point && self.separator.number(cell).is_some()
             };
-            let whole = |cell: &str| cell.bytes().filter(u8::is_ascii_digit).count() == 3;
-            let plain = cells().any(|cell| !cell.contains([mark, other]) && whole(cell));
-            let joined = cells().map(|cell| number(&cell.replace(mark, "")));
-            let joined: Option<Vec<f64>> = joined.collect();
-            let columns = 0..self.names.len();
-            let mut all = columns.flat_map(|it| rows.iter().map(move |row| self.cell(*row, it)));
-            (mark == ',' && all.any(is_decimal))
-                || (plain && joined.is_some_and(|joined| jump(&joined) < jump(read)))
+            let mut columns = self.needed.iter();
+            cells().any(|cell| !cell.contains(mark))
+                || columns.any(|at| rows.iter().any(|row| is_decimal(self.cell(*row, *at))))
         })
     }
 }
@@ -386,23 +411,24 @@ fn grouped(cell: &str, mark: char) -> bool {
         && is_grouped
 }
 
-/// Returns the greatest step between neighbouring values, as a share of their range.
-fn jump(values: &[f64]) -> f64 {
-    let steps = values.windows(2).map(|pair| (pair[1] - pair[0]).abs());
-    let (low, high) = values
+/// Returns the ratio of the greatest magnitude to the least that is not zero.
+fn ratio(values: &[f64]) -> f64 {
+    let sizes = values
         .iter()
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
-            (low.min(*value), high.max(*value))
-        });
-    steps.fold(0.0, f64::max) / (high - low)
+        .map(|value| value.abs())
+        .filter(|size| *size > 0.0);
+    let (low, high) = sizes.fold((f64::INFINITY, 0.0_f64), |(low, high), size| {
+        (low.min(size), high.max(size))
+    });
+    high / low
 }
 
-/// Returns the numbers of the named column of a table.
+/// Returns the numbers of the named columns of a table, in the order of the names.
 ///
 /// # Errors
-/// A table without the column or without rows, and what [`Table::numbers`] refuses.
-pub fn column(file: &str, text: &str, name: &str) -> Result<Vec<f64>, Problem> {
-    let table = Table::parse(text, &[name]);
+/// A table without the columns, with one of them twice or without rows, and what [`Table::numbers`] refuses.
+pub fn columns(file: &str, text: &str, names: &[&str]) -> Result<Vec<Vec<f64>>, Problem> {
+    let table = Table::parse(text, names);
     let problem = |line, found: &str, allowed: &str, remedy: &str| Problem {
         file: file.to_owned(),
         line,
@@ -414,27 +440,44 @@ pub fn column(file: &str, text: &str, name: &str) -> Result<Vec<f64>, Problem> {
         let remedy = "check that the program has finished writing the file";
         return Err(problem(None, "nothing", "a table with a header", remedy));
     }
-    let Some(at) = table.column(name) else {
+    let rows: Vec<usize> = (0..table.len()).collect();
+    let column = |name: &&str| {
         let found = format!("columns {}", clip(&table.names.join(", ")));
         let allowed = format!("a table with a column `{name}`");
-        let remedy = "correct the column's name in the case";
-        return Err(problem(Some(1), &found, &allowed, remedy));
+        match table.names.iter().filter(|own| own == name).count() {
+            0 => {
+                let remedy = "correct the column's name in the case";
+                return Err(problem(Some(1), &found, &allowed, remedy));
+            }
+            1 => {}
+            _ => {
+                let remedy = "check the program's results file: give its columns different names";
+                let allowed = format!("a table with one column `{name}`");
+                return Err(problem(None, &found, &allowed, remedy));
+            }
+        }
+        if rows.is_empty() {
+            let remedy = "check the program's results file";
+            let found = "a header alone";
+            return Err(problem(Some(1), found, "a table with rows", remedy));
+        }
+        let at = table.column(name).unwrap_or_default();
+        table.numbers(at, &rows).map_err(|cell| {
+            let remedy = format!("check the program's results file: {}", cell.remedy);
+            problem(Some(cell.line), &cell.found, &cell.allowed, &remedy)
+        })
     };
-    if table.is_empty() {
-        let remedy = "check the program's results file";
-        let found = "a header alone";
-        return Err(problem(Some(1), found, "a table with rows", remedy));
-    }
-    let rows: Vec<usize> = (0..table.len()).collect();
-    table.numbers(at, &rows).map_err(|cell| {
-        let remedy = format!("check the program's results file: {}", cell.remedy);
-        problem(Some(cell.line), &cell.found, &cell.allowed, &remedy)
-    })
+    names.iter().map(column).collect()
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Table, column};
+    use super::{Table, columns};
+    use crate::Problem;
+
+    fn column(text: &str, name: &str) -> Result<Vec<f64>, Problem> {
+        columns("f", text, &[name]).map(|all| all.concat())
+    }
 
     #[test]
     fn columns_are_found_between_commas_semicolons_and_blanks() {
@@ -443,10 +486,31 @@ mod tests {
             "time; force\n0; 1\n\n1; 2.5",
             "time; force\n0,0; 1,0\n1,0;2,5",
             "\u{feff}\"time\"  \"force\"\n 0  1 \n 1\t2.5D0\n",
+            "\"time (s)\"  \"force\"\n 0  1 \n 1\t2.5\n",
             "Logger,X1\nmade by,somebody\n\n1,time,force\nNO.,s,N\n\n 1,0,+ 1\n 2,1,+    2.5\n",
             "time\tforce\r\n[s]\t[N]\r\n0\t1\r\n\t\r\n1\t2,5\r\n",
+            "time,force,\n0,1,\n1,2.5,\n",
+            "time,force\r0,1\r1,2.5\r",
+            "% time force\n0 1\n1 2.5\n",
+            "time,force,note\n0,1,\"a, b\"\n1,2.5,\"5 in\n",
         ] {
-            assert_eq!(column("f", text, "force").unwrap(), [1.0, 2.5], "{text}");
+            assert_eq!(column(text, "force").unwrap(), [1.0, 2.5], "{text}");
+        }
+    }
+
+    /// Checks that a title with the names of columns is not taken for the header.
+    #[test]
+    fn the_header_stands_above_numbers() {
+        for text in [
+            "y, kPa\nt,y\n0,10\n1,20\n",
+            "y curve\nt y\n0 10\n1 20\n",
+            "y over t\nt y\n0 10\n1 20\n",
+            "y,t\nt,y\n0,10\n1,20\n",
+            "# comment with t and y\nt,y\n0,10\n1,20\n",
+            "y at support\nt x y\n0 1 10\n1 2 20\n",
+        ] {
+            let read = columns("f", text, &["t", "y"]).unwrap();
+            assert_eq!(read, [[0.0, 1.0], [10.0, 20.0]], "{text}");
         }
     }
 
@@ -456,13 +520,16 @@ mod tests {
             ("", "nothing"),
             ("a,b\n", "header alone"),
             ("a,c\n1,2\n", "column `b`"),
+            ("a,b,b\n1,2,3\n", "one column `b`"),
             ("a,b\n1,2\n3\n", "line 3"),
             ("a,b\n\n\r\n1,2\n\n3\n", "line 6"),
             ("a,b\n1,NaN\n2,3\n", "line 2: `NaN`"),
+            ("a,b\n1,-1.#IND\n2,3\n", "line 2: `-1.#IND`"),
+            ("a,b\n1,1-2\n2,3\n", "`1-2`"),
             ("made by x\na;b\n\n1;2\n\n3;x\n", "line 6: `x`"),
             ("a,b\n1,2,3\n", "3 cells"),
         ] {
-            let error = column("f", text, "b").unwrap_err().to_string();
+            let error = column(text, "b").unwrap_err().to_string();
             assert!(error.contains(words), "{text:?}: {error}");
         }
     }
@@ -472,26 +539,30 @@ mod tests {
     fn thousands_are_told_from_decimals() {
         for text in [
             "t\tb\n0.1\t984\n0.2\t996\n0.3\t1,008\n0.4\t1,020\n",
-            "t;b\n0.1;1,008\n0.2;1,020\n",
             "t;b\n1;984\n2;996\n3;1,008\n4;1,020\n",
             "t;b\n1;984\n2;996\n3;1.008\n4;1.020\n",
+            "t;b\n0;995\n1;1.005\n2;990\n3;1.010\n",
+            "t;b\n0;0\n1;1,200\n2;2,400\n",
+            "t;b\n0,5;1,250\n1,5;980\n2,5;1,500\n",
             "t;b\n1;1,008,000\n",
             "t;b\n1;1,008.5\n",
             "t;b\n1;1.008,5\n",
             "t,b\n1,\"1,008\"\n",
         ] {
-            let error = column("f", text, "b").unwrap_err().to_string();
+            let error = column(text, "b").unwrap_err().to_string();
             assert!(error.contains("thousands"), "{text:?}: {error}");
         }
+        let error = columns("f", "t;b\n0.1;1,008\n0.2;1,020\n", &["t", "b"]);
+        assert!(error.unwrap_err().to_string().contains("thousands"));
         for (text, values) in [
             ("t;b\n1;0,996\n2;1,008\n", [0.996, 1.008]),
             ("t;b\n1;1,008\n2;1,020\n", [1.008, 1.02]),
-            ("t;b\n1;100\n2;100,125\n", [100.0, 100.125]),
+            ("t;b;id\n1;1,008;2.1\n2;1,020;2.1\n", [1.008, 1.02]),
             ("t,b\n1,100\n2,100.125\n", [100.0, 100.125]),
             ("t,b\n1,1.008\n2,1.020\n", [1.008, 1.02]),
             ("t;b\n0.5;1,08\n1;2\n", [1.08, 2.0]),
         ] {
-            assert_eq!(column("f", text, "b").unwrap(), values, "{text:?}");
+            assert_eq!(column(text, "b").unwrap(), values, "{text:?}");
         }
     }
 

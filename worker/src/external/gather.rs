@@ -153,11 +153,11 @@ impl Readings {
                 column,
             } => {
                 let (file, text) = of(reading);
-                let read = |name: &String| {
-                    table::column(file, text, name).map_err(|error| error.to_string())
-                };
-                let at = at.as_ref().map(read).transpose()?;
-                (file, read(column)?, at)
+                let names = std::iter::once(column.as_str()).chain(at.as_deref());
+                let names: Vec<&str> = names.collect();
+                let read = table::columns(file, text, &names).map_err(|error| error.to_string())?;
+                let mut read = read.into_iter();
+                (file, read.next().unwrap_or_default(), read.next())
             }
             ChannelSource::Pointer {
                 reading,
@@ -186,6 +186,21 @@ impl Readings {
 }
 
 impl Outputs {
+    /// Checks that gradients, where there are any, have an entry for each of the variables.
+    ///
+    /// # Errors
+    /// A message that names the lengths.
+    pub(super) fn check_gradients(&self, variables: usize) -> Result<(), String> {
+        let mut gradients = self.gradients.iter();
+        let wrong = gradients.find(|(_, gradient)| gradient.len() != variables);
+        wrong.map_or(Ok(()), |(name, gradient)| {
+            let length = gradient.len();
+            Err(format!(
+                "the gradient of `{name}` has {length} entries, and the parameters file {variables} variables"
+            ))
+        })
+    }
+
     /// Returns the derivative of a channel's values by the variable at an index of the parameters file; an empty curve if the
     /// output files hold no gradients of all of them.
     pub(super) fn derivative(&self, source: &ChannelSource, variable: usize) -> Vec<f64> {

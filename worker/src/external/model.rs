@@ -207,6 +207,10 @@ impl Prepared {
         if left.is_fail {
             return Ok(failed(FAIL));
         }
+        if self.returns_gradients(spec) {
+            let variables = self.values(spec)?.len();
+            left.check_gradients(variables).map_err(unusable)?;
+        }
         left.named.extend(evaluate_equations(
             &self.external.equations,
             &self.equation_parameters(spec),

@@ -213,7 +213,7 @@ pub(super) fn read_output(
         ));
     }
     let bytes = fs::read(&path).map_err(|error| format!("`{file}`: {error}"))?;
-    Ok(String::from_utf8_lossy(&bytes).into_owned())
+    Ok(exchange::decoded(&bytes).into_owned())
 }
 
 /// Permission to run one of the limited number of simultaneous processes of a program on this computer, held

@@ -11,7 +11,7 @@ use crate::{
     file,
     source::RecordFolder,
 };
-use exchange::{Problem, dakota, object, pest, table};
+use exchange::{Problem, dakota, decoded, object, pest, table};
 use protocol::{
     case::Case,
     external::{
@@ -208,7 +208,7 @@ impl Assembly<'_> {
     fn check_widths(
         &self,
         path: &Path,
-        fields: &BTreeMap<String, pest::Field>,
+        fields: &BTreeMap<String, pest::TemplateField>,
         (case, parameters): (&Case, &[Parameter]),
     ) -> Result<(), CaseError> {
         for (index, parameter) in parameters.iter().enumerate() {
@@ -417,21 +417,28 @@ impl Assembly<'_> {
         readings: &[OutputFile],
         case: &Case,
     ) -> Result<(), CaseError> {
-        let (reading, at) = match curve {
+        let (reading, at, column) = match curve {
             From::Named(_) => return Ok(()),
-            From::Column { reading, at, .. } | From::Pointer { reading, at, .. } => (*reading, at),
+            From::Column {
+                reading,
+                at,
+                column,
+            } => (*reading, at, Some(column)),
+            From::Pointer { reading, at, .. } => (*reading, at, None),
         };
         let (Some(at), Some(channel)) = (at, case.channels.get(index)) else {
             return Ok(());
         };
         let left = &readings[reading].file;
         // what cannot be read there is no part of the case: the program writes it anew in its own folder
-        let Ok(text) = std::fs::read_to_string(self.folder.join(left)) else {
+        let Ok(bytes) = std::fs::read(self.folder.join(left)) else {
             return Ok(());
         };
-        let along = match curve {
-            From::Pointer { .. } => object::values(left, &text, at),
-            From::Named(_) | From::Column { .. } => table::column(left, &text, at),
+        let text = decoded(&bytes);
+        let along = match column {
+            None => object::values(left, &text, at),
+            Some(column) => table::columns(left, &text, &[at.as_str(), column.as_str()])
+                .map(|read| read.into_iter().next().unwrap_or_default()),
         };
         let Ok(along) = along else {
             return Ok(());

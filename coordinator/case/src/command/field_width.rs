@@ -2,7 +2,7 @@
 //! that shows the same text before and after a step hides the unknown from every search.
 use exchange::{
     number,
-    pest::{Field, fit},
+    pest::{TemplateField, fit},
 };
 use protocol::{
     case::{Case, Scale, Unknown},
@@ -35,7 +35,7 @@ pub(super) fn hidden_step(
     case: &Case,
     index: usize,
     parameter: &Parameter,
-    field: Field,
+    field: TemplateField,
 ) -> Option<HiddenStep> {
     let (unknown, ratio) = searched(case, index)?;
     let steps: Vec<[f64; 2]> = steps(unknown)

@@ -163,9 +163,15 @@ fn agreement(case: &Case, result: &ConditionResult) -> Vec<Row> {
         Row::group(objective),
         Row::new("weighted sum of mean squared errors", cells),
     ];
+    // a limit is not to be met: neither its peaks nor its mean say anything
+    let is_limit = |at: usize| case.channels.get(at).is_some_and(|own| own.limit.is_some());
     for measure in MEASURES {
-        rows.push(Row::group(measure.title));
-        rows.extend(scored.iter().map(|&at| measure.row(case, result, at)));
+        let mut shown = scored.clone();
+        shown.retain(|at| measure.has_ratio || !is_limit(*at));
+        if !shown.is_empty() {
+            rows.push(Row::group(measure.title));
+            rows.extend(shown.iter().map(|&at| measure.row(case, result, at)));
+        }
     }
     rows
 }

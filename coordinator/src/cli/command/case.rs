@@ -192,7 +192,9 @@ fn import(control: &Path, folder: Option<&Path>, output: OutputChoice) -> anyhow
             Some("") | None => String::new(),
             Some(folder) => format!("{folder}/"),
         };
-        let text = error.to_string().replace(&copied, &own);
+        let text = error.to_string();
+        let text = text.replace(&format!("{copied}case.toml"), &control.display().to_string());
+        let text = text.replace(&copied, &own);
         let (message, remedy) = text.split_once("\nhelp: ").unwrap_or((&text, ""));
         Problem {
             message: message.to_owned(),

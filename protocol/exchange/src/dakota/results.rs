@@ -81,13 +81,14 @@ pub fn results(file: &str, text: &str, functions: &[String]) -> Result<Results, 
         });
     }
     Ok(Results::Values {
+        gradients: gradients(file, rest, read.len())?,
         values: read,
-        gradients: gradients(file, rest)?,
     })
 }
 
-/// Parses the gradients, which are lists in single brackets; stops at the first Hessian.
-fn gradients(file: &str, text: &str) -> Result<Vec<Vec<f64>>, Problem> {
+/// Parses the gradients, which are lists of the same length in single brackets: none, or one for each function. Stops at the
+/// first Hessian.
+fn gradients(file: &str, text: &str, functions: usize) -> Result<Vec<Vec<f64>>, Problem> {
     let plain = text.split("[[").next().unwrap_or_default();
     let lists = plain.split('[').skip(1);
     let list = |list: &str| {
@@ -103,7 +104,21 @@ fn gradients(file: &str, text: &str) -> Result<Vec<Vec<f64>>, Problem> {
                 remedy: "check the program's results file".to_owned(),
             })
     };
-    lists.map(list).collect()
+    let all: Vec<Vec<f64>> = lists.map(list).collect::<Result<_, Problem>>()?;
+    let [first, ..] = all.as_slice() else {
+        return Ok(all);
+    };
+    let length = first.len();
+    if all.len() == functions && all.iter().all(|own| own.len() == length) {
+        return Ok(all);
+    }
+    Err(Problem {
+        file: file.to_owned(),
+        line: None,
+        found: format!("{} gradients, the first of {length} entries", all.len()),
+        allowed: format!("{functions} gradients of the same length, one for each function"),
+        remedy: "check the program's results file".to_owned(),
+    })
 }
 
 #[cfg(test)]
@@ -130,6 +145,8 @@ mod tests {
             ("1 w2\n2\n", "label `w2`"),
             ("nan\n2\n", "line 1"),
             ("1\n2\n[ x ]\n", "gradient"),
+            ("1\n2\n[ 1 2 ]\n", "1 gradients"),
+            ("1\n2\n[ 1 2 ]\n[ 3 ]\n", "of the same length"),
         ] {
             let error = of(text).unwrap_err().to_string();
             assert!(error.contains(words), "{text:?}: {error}");

@@ -18,4 +18,4 @@ pub use digits::fit;
 pub use instruction::Instructions;
 pub use jacobian::jacobian;
 pub use report::{ParRow, ReiRow, par, rei};
-pub use template::{Field, Template};
+pub use template::{Template, TemplateField};

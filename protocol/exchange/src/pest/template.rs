@@ -23,7 +23,7 @@ pub struct Template {
 
 /// Field of a template.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Field {
+pub struct TemplateField {
     /// Width of the field including both delimiters (characters).
     pub width: usize,
     /// Line number of the field in the template.
@@ -106,11 +106,11 @@ impl Template {
     }
 
     /// Returns the names of the parameters in the template, each with its narrowest field.
-    pub fn fields(&self) -> BTreeMap<String, Field> {
-        let mut fields: BTreeMap<String, Field> = BTreeMap::new();
+    pub fn fields(&self) -> BTreeMap<String, TemplateField> {
+        let mut fields: BTreeMap<String, TemplateField> = BTreeMap::new();
         for part in &self.parts {
             if let Part::Field { name, width, line } = part {
-                let field = Field {
+                let field = TemplateField {
                     width: *width,
                     line: *line,
                 };
@@ -166,7 +166,7 @@ mod tests {
         let text = "ptf #\nk = #K     #\nboth #k# and # Q #\n";
         let template = Template::parse("a.tpl", text).unwrap();
         let fields = [("k", 3), ("q", 5)].map(|(name, width)| {
-            let field = Field { width, line: 3 };
+            let field = TemplateField { width, line: 3 };
             (name.to_owned(), field)
         });
         assert_eq!(template.fields(), BTreeMap::from(fields));

@@ -4,8 +4,19 @@ use exchange::pest::{Control, Side};
 use std::collections::{BTreeMap, BTreeSet};
 use toml_edit::{Array, ArrayOfTables, InlineTable, Table, Value, value};
 
-/// Name of the CSV file to which an import writes the observations of a control file.
-pub(super) const OBSERVATIONS: &str = "observations.csv";
+/// Name of the CSV file to which an import writes the observations of a control file, unless its folder has one.
+const OBSERVATIONS: &str = "observations.csv";
+
+/// Returns the name of the CSV file with the observations, which none of the copied files has.
+pub(super) fn file_name(copied: &[String]) -> String {
+    let names = (1..).map(|number| match number {
+        1 => OBSERVATIONS.to_owned(),
+        _ => format!("observations_{number}.csv"),
+    });
+    let mut free = names.filter(|name| !copied.contains(name));
+    free.next().unwrap_or_default()
+}
+
 /// Name of the channel that an import creates for prior information.
 const PRIOR: &str = "prior_information";
 
@@ -32,19 +43,25 @@ pub(super) struct Row<'a> {
 /// Groups the observations and the prior information by channel, in order of first appearance.
 pub(super) fn groups(control: &Control) -> Vec<Group<'_>> {
     let mut all: Vec<Group<'_>> = Vec::new();
-    let mut known: BTreeMap<(&str, bool), usize> = BTreeMap::new();
+    let mut known: BTreeMap<(&str, bool, bool), usize> = BTreeMap::new();
     let observations = control.observations.iter();
-    let observations = observations.map(|it| (&*it.group, &*it.name, it.value, it.weight));
-    let prior = control.prior.iter();
-    let prior = prior.map(|it| (PRIOR, &*it.name, it.value, it.weight));
-    for (group, name, value, weight) in observations.chain(prior) {
+    let observations = observations.map(|it| (&*it.group, false, &*it.name, it.value, it.weight));
+    let prior = control.prior.iter().map(|it| {
+        // prior information of one group is a limit, of all others one channel
+        let is_limit = Side::of_group(&it.group).is_some();
+        let group = if is_limit { &*it.group } else { PRIOR };
+        (group, true, &*it.name, it.value, it.weight)
+    });
+    for (group, is_prior, name, value, weight) in observations.chain(prior) {
         let row = Row {
             name,
             value,
             weight,
         };
         let is_measured = weight > 0.0;
-        let at = *known.entry((group, is_measured)).or_insert(all.len());
+        let at = *known
+            .entry((group, is_prior, is_measured))
+            .or_insert(all.len());
         match all.get_mut(at) {
             Some(own) => own.rows.push(row),
             None => all.push(Group {
@@ -57,7 +74,10 @@ pub(super) fn groups(control: &Control) -> Vec<Group<'_>> {
     }
     // a group of which a part counts is two channels
     for group in all.iter_mut().filter(|it| !it.is_measured) {
-        if known.contains_key(&(group.title, true)) {
+        if [false, true]
+            .iter()
+            .any(|prior| known.contains_key(&(group.title, *prior, true)))
+        {
             group.name.push_str("_predicted");
         }
     }
@@ -107,14 +127,14 @@ pub(super) fn table(groups: &[Group<'_>]) -> String {
 }
 
 /// Returns the `[[channels]]` tables of the imported case, one for each group of observations.
-pub(super) fn tables(groups: &[Group<'_>], condition: &str) -> ArrayOfTables {
+pub(super) fn tables(groups: &[Group<'_>], condition: &str, file: &str) -> ArrayOfTables {
     groups
         .iter()
-        .map(|group| channel(group, condition))
+        .map(|group| channel(group, condition, file))
         .collect()
 }
 
-fn channel(group: &Group<'_>, condition: &str) -> Table {
+fn channel(group: &Group<'_>, condition: &str, file: &str) -> Table {
     let mut table = Table::new();
     table.insert("name", value(&group.name));
     if group.name != group.title {
@@ -138,7 +158,7 @@ fn channel(group: &Group<'_>, condition: &str) -> Table {
         let rows = [("column", "channel"), ("is", &group.name)];
         let rows: InlineTable = rows.into_iter().collect();
         let texts = [
-            ("file", OBSERVATIONS),
+            ("file", file),
             ("at", "number"),
             ("column", "value"),
             ("weight", "weight"),

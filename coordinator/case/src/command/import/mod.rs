@@ -4,7 +4,7 @@ mod channels;
 mod copy;
 mod unknowns;
 
-use channels::{Group, OBSERVATIONS};
+use channels::Group;
 use exchange::{Problem, decoded, pest::Control};
 use std::{
     fs, io,
@@ -88,7 +88,10 @@ pub fn import(control: &Path, to: Option<&Path>) -> Result<Imported, ImportError
         let file = control.file_name().unwrap_or_default().to_string_lossy();
         let case = text_of(&read, &groups, (&name, &file), &files);
         fs::write(folder.join("case.toml"), case)?;
-        fs::write(folder.join(OBSERVATIONS), channels::table(&groups))
+        fs::write(
+            folder.join(channels::file_name(&files)),
+            channels::table(&groups),
+        )
     });
     if let Err(source) = written {
         drop(fs::remove_dir_all(&folder));
@@ -133,7 +136,11 @@ fn text_of(
     document.insert("conditions", Item::ArrayOfTables(conditions));
     document.insert(
         "channels",
-        Item::ArrayOfTables(channels::tables(groups, CONDITION)),
+        Item::ArrayOfTables(channels::tables(
+            groups,
+            CONDITION,
+            &channels::file_name(files),
+        )),
     );
     document.insert(
         "objective",

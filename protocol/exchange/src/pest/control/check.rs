@@ -43,9 +43,17 @@ fn names(control: &Control) -> Result<(), Fault> {
         return Err((found, "at least one command line and one output file"));
     }
     let names: Vec<&str> = parameters.iter().map(|it| &*it.name).collect();
-    let observed: Vec<&str> = observations.iter().map(|it| &*it.name).collect();
+    // prior information is compared like observations, and shares their names
+    let priors = control.prior.iter().map(|it| &*it.name);
+    let observed = observations.iter().map(|it| &*it.name);
+    let observed: Vec<&str> = observed.chain(priors).collect();
+    let grouped: Vec<&str> = control.groups.iter().map(|it| &*it.name).collect();
+    unique(&grouped, "a name that no other parameter group has")?;
     unique(&names, "a name that no other parameter has")?;
-    unique(&observed, "a name that no other observation has")
+    unique(
+        &observed,
+        "a name that no other observation or prior information has",
+    )
 }
 
 fn unique(names: &[&str], allowed: &'static str) -> Result<(), Fault> {
@@ -124,6 +132,10 @@ fn parameter(own: &mut Parameter) -> Result<Option<String>, Fault> {
     }
     let (lower, upper) = (own.lower, own.upper);
     let inside = (lower..=upper).contains(&initial);
+    if own.varies() && !(lower.is_finite() && upper.is_finite()) {
+        let found = format!("{name} without PARLBND or PARUBND");
+        return Err((found, "both bounds of a parameter that is estimated"));
+    }
     if own.varies() && !inside {
         let found = format!("{name} = {initial} outside {lower} to {upper}");
         return Err((found, "within its bounds"));

@@ -110,12 +110,12 @@ pub(super) fn read(lines: &Lines, open: Open<'_>) -> Result<Control, Problem> {
         });
     }
     unused_columns(&mut control, &observations, &OBSERVATION);
-    observation_groups(lines, open, &mut control)?;
     if let Some(section) = lines.section("model command line") {
         control.commands = section.lines.iter().map(|line| line.text.clone()).collect();
     }
     pairs(lines, counts.as_ref(), open, &mut control)?;
     priors(lines, open, &mut control)?;
+    observation_groups(lines, open, &mut control)?;
     if let Some(counts) = counts {
         let found = [
             ("NPAR", counts.parameters, control.parameters.len()),
@@ -281,14 +281,16 @@ fn observation_groups(lines: &Lines, open: Open<'_>, control: &mut Control) -> R
             row.word("obgnme")?
         ));
     }
-    let counted = control.observations.iter().filter(|it| it.weight > 0.0);
+    let observed = control.observations.iter().map(|it| (&it.group, it.weight));
+    let priors = control.prior.iter().map(|it| (&it.group, it.weight));
+    let counted = observed.chain(priors).filter(|(_, weight)| *weight > 0.0);
     let limits: BTreeSet<(&str, &str)> = counted
-        .filter_map(|it| {
-            let words = match Side::of_group(&it.group)? {
+        .filter_map(|(group, _)| {
+            let words = match Side::of_group(group)? {
                 Side::AtMost => "exceeds",
                 Side::AtLeast => "stays below",
             };
-            Some((it.group.as_str(), words))
+            Some((group.as_str(), words))
         })
         .collect();
     let notes = limits.iter().map(|(name, words)| {
@@ -314,9 +316,14 @@ fn parameters(
         .map(|counts| counts.parameters)
         .filter(|count| *count < all.len());
     let ties = behind.map_or_else(Vec::new, |count| all.split_off(count));
-    let tied: BTreeMap<String, String> = ties
+    let stated = rows(lines, "parameter tied data", &["parnme", "partied"], open)?;
+    let stated = stated
         .iter()
+        .filter_map(|row| Some((row.word("parnme").ok()?, row.word("partied").ok()?)));
+    let behind = ties.iter();
+    let tied: BTreeMap<String, String> = behind
         .filter_map(|row| Some((row.word("parnme").ok()?, row.word("partrans").ok()?)))
+        .chain(stated)
         .collect();
     let commands = |row: &&Row| row.word_or("dercom", "1") != "1";
     note_rows(

@@ -58,8 +58,14 @@ impl Lines {
                     .extend(self::options(options).map(|name| (name, number)));
             } else if let Some(name) = line.strip_prefix('*') {
                 let name: Vec<&str> = name.split_whitespace().collect();
+                let name = name.join(" ").to_lowercase();
+                if let Some(other) = all.section(&name).filter(|_| !name.ends_with(" external")) {
+                    let found = format!("section `{name}` again, after line {}", other.number);
+                    let allowed = "each section once";
+                    return Err(all.problem(number, found, allowed));
+                }
                 all.sections.push(Section {
-                    name: name.join(" ").to_lowercase(),
+                    name,
                     number,
                     lines: Vec::new(),
                 });

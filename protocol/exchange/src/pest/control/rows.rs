@@ -151,10 +151,17 @@ fn files(
         let names: Vec<String> = table.names.iter().map(|name| name.to_lowercase()).collect();
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
         for row in 0..table.len() {
+            let (width, line) = (table.width(row), table.line(row));
+            let is_short = width < names.len();
+            if width > names.len() || (is_short && !table.is_blank_separated()) {
+                let found = format!("a row of {width} cells");
+                let allowed = format!("{} cells, as in the header", names.len());
+                return Err(Problem::at(file, line, found, allowed, "correct the table"));
+            }
             let cells = (0..names.len()).map(|column| table.cell(row, column));
             let cells = cells.map(|cell| if Some(cell) == missing { "" } else { cell });
             let cells: Vec<&str> = cells.collect();
-            all.push(Row::of(file, table.line(row), &names, &cells));
+            all.push(Row::of(file, line, &names, &cells));
         }
     }
     Ok(all)

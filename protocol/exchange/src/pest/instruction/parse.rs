@@ -119,7 +119,8 @@ fn instruction(word: &str) -> Option<Result<Instruction, Continued>> {
         (!name.is_empty()).then(|| name.to_owned())
     };
     let between = |close: char| {
-        let (own, columns) = rest.split_once(close)?;
+        // a name may have brackets itself
+        let (own, columns) = rest.rsplit_once(close)?;
         let (from, to) = columns.split_once(':')?;
         let (from, to) = (number(from)?, number(to)?);
         (from <= to).then_some((name(own)?, from, to))
