@@ -5,7 +5,7 @@
 //! derived from the types.
 use protocol::{
     announce::{Place, Role, Sign},
-    case::{Case, Offset, Reproducibility, Scale},
+    case::{Case, ChannelLimit, Offset, Reproducibility, Scale},
     event::Event,
     id::{AttemptId, ContentHash, JobId, RunId},
     job::{Answer, Derivative, Failure, Job, Outcome, Per, Reached, Reply, Verdict},
@@ -36,7 +36,7 @@ fn form() -> String {
     trace!(Simulation Discretisation ReduceHeadSpec ReducedHead);
     trace!(Job Reply Answer Outcome Failure Verdict Reached Derivative Per ModeFamily ElementKind);
     trace!(Place Role Sign Scale Integrator Offset RopeEnds Smoothing StressRecovery);
-    trace!(TurnSense Reproducibility ReferenceResult);
+    trace!(TurnSense Reproducibility ReferenceResult ChannelLimit);
     let registry = tracer.registry().expect("every variant was seen");
     let mut text = format!("wire version {}\n", wire::VERSION);
     for (name, form) in registry {

@@ -8,10 +8,11 @@ pub const MISSING: &str = "–";
 /// No-break space that keeps a number and its unit or power on one line.
 const NO_BREAK: char = '\u{a0}';
 
-/// Returns the decimal exponent of a finite, non-zero value after rounding to three digits.
-fn exponent(value: f64) -> i32 {
+/// Returns the decimal exponent of a finite, non-zero value after rounding to a number of digits.
+fn exponent(value: f64, digits: i32) -> i32 {
     // formatting rounds as the printed digits will be, which log10().floor() does not
-    let text = format!("{:.2e}", value.abs());
+    let decimals = usize::try_from(digits - 1).unwrap_or(0);
+    let text = format!("{:.decimals$e}", value.abs());
     text.split_once('e')
         .and_then(|(_, exponent)| exponent.parse().ok())
         .unwrap_or(0)
@@ -59,7 +60,7 @@ pub fn precise(value: f64, difference: f64) -> String {
     }
     digits(
         value,
-        (exponent(value) - exponent(difference) + 2).clamp(3, MOST),
+        (exponent(value, 3) - exponent(difference, 3) + 2).clamp(3, MOST),
     )
 }
 
@@ -82,7 +83,7 @@ fn digits(value: f64, digits: i32) -> String {
     if value == 0.0 {
         return "0".to_owned();
     }
-    let exponent = exponent(value);
+    let exponent = exponent(value, digits);
     if !(-2..5).contains(&exponent) {
         let mantissa = value / 10_f64.powi(exponent);
         return format!(

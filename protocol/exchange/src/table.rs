@@ -274,7 +274,9 @@ impl Table {
     /// Returns whether the first row holds the units of the needed columns: words in all of them, above numbers.
     fn has_units(&self) -> bool {
         /// Parts of words that loggers and programs write in place of a lost value: `-nan`, `1.#QNAN`, `***`, `N/A`.
-        const LOST: [&str; 8] = ["nan", "inf", "n/a", "null", "none", "#", "*", "err"];
+        const LOST: [&str; 11] = [
+            "nan", "inf", "n/a", "null", "none", "#", "*", "err", "over", "bad", "--",
+        ];
         let is_word = |column: &usize| {
             let cell = self.cell(0, *column).to_lowercase();
             let is_lost = cell == "na" || LOST.iter().any(|part| cell.contains(part));
@@ -286,9 +288,11 @@ impl Table {
             let cell = self.cell(1, *column);
             self.separator.number(cell).is_some()
         };
+        let mut columns = 0..self.names.len();
         !self.needed.is_empty()
             && self.rows.len() > 1
             && self.width(0) == self.names.len()
+            && columns.all(|column| self.separator.number(self.cell(0, column)).is_none())
             && self.needed.iter().all(is_word)
             && self.needed.iter().all(is_number)
     }
@@ -347,7 +351,7 @@ impl Table {
             .copied()
             .find(|row| self.cell(*row, column).contains([',', '.']));
         match separated {
-            Some(row) if self.separates_thousands(column, rows, &values) => Err(wrong(
+            Some(row) if self.separates_thousands(column, rows) => Err(wrong(
                 row,
                 quoted(row),
                 "a number without separated thousands",
@@ -357,30 +361,22 @@ impl Table {
         }
     }
 
-    /// Returns whether commas or points in a column separate thousands: all numbers that have one look like that, and
-    ///
-    /// - the needed columns have the other mark for their decimals, or
-    /// - a comma, that whole numbers stand beside them: a program that writes decimals with a comma writes `0,000`; or
-    /// - a point, that the numbers lie closer together when read so, as 995 and 1.005 do.
-    fn separates_thousands(&self, column: usize, rows: &[usize], read: &[f64]) -> bool {
+    /// Returns whether commas or points in a column separate thousands: all numbers that have one look like that, and the needed
+    /// columns have the other mark for their decimals. A comma also separates thousands if whole numbers stand beside such
+    /// numbers: a program that writes decimals with a comma writes `0,000`.
+    fn separates_thousands(&self, column: usize, rows: &[usize]) -> bool {
         [(',', '.'), ('.', ',')].into_iter().any(|(mark, other)| {
             let cells = || rows.iter().map(|row| self.cell(*row, column));
             let marked = || cells().filter(move |cell| cell.contains(mark));
             if marked().next().is_none() || !marked().all(|cell| grouped(cell, mark)) {
                 return false;
             }
-            if mark == '.' {
-                let whole = cells().any(|cell| !cell.contains([mark, other]));
-                let joined = cells().map(|cell| number(&cell.replace(mark, "")));
-                let joined: Option<Vec<f64>> = joined.collect();
-                return whole && joined.is_some_and(|joined| ratio(&joined) < ratio(read));
-            }
             let is_decimal = |cell: &str| {
-                let has_point = cell.contains(other) && !cell.contains(mark);
-                has_point && self.separator.number(cell).is_some()
+                let has_other = cell.contains(other) && !cell.contains(mark);
+                has_other && self.separator.number(cell).is_some()
             };
             let mut columns = self.needed.iter();
-            cells().any(|cell| !cell.contains(mark))
+            (mark == ',' && cells().any(|cell| !cell.contains(mark)))
                 || columns.any(|at| rows.iter().any(|row| is_decimal(self.cell(*row, *at))))
         })
     }
@@ -411,18 +407,6 @@ fn grouped(cell: &str, mark: char) -> bool {
         && is_grouped
 }
 
-/// Returns the ratio of the greatest magnitude to the least that is not zero.
-fn ratio(values: &[f64]) -> f64 {
-    let sizes = values
-        .iter()
-        .map(|value| value.abs())
-        .filter(|size| *size > 0.0);
-    let (low, high) = sizes.fold((f64::INFINITY, 0.0_f64), |(low, high), size| {
-        (low.min(size), high.max(size))
-    });
-    high / low
-}
-
 /// Returns the numbers of the named columns of a table, in the order of the names.
 ///
 /// # Errors
@@ -447,7 +431,7 @@ pub fn columns(file: &str, text: &str, names: &[&str]) -> Result<Vec<Vec<f64>>, 
         match table.names.iter().filter(|own| own == name).count() {
             0 => {
                 let remedy = "correct the column's name in the case";
-                return Err(problem(Some(1), &found, &allowed, remedy));
+                return Err(problem(None, &found, &allowed, remedy));
             }
             1 => {}
             _ => {
@@ -526,6 +510,7 @@ mod tests {
             ("a,b\n1,NaN\n2,3\n", "line 2: `NaN`"),
             ("a,b\n1,-1.#IND\n2,3\n", "line 2: `-1.#IND`"),
             ("a,b\n1,1-2\n2,3\n", "`1-2`"),
+            ("a,b\n1,OL\n2,3\n", "`OL`"),
             ("made by x\na;b\n\n1;2\n\n3;x\n", "line 6: `x`"),
             ("a,b\n1,2,3\n", "3 cells"),
         ] {
@@ -540,8 +525,6 @@ mod tests {
         for text in [
             "t\tb\n0.1\t984\n0.2\t996\n0.3\t1,008\n0.4\t1,020\n",
             "t;b\n1;984\n2;996\n3;1,008\n4;1,020\n",
-            "t;b\n1;984\n2;996\n3;1.008\n4;1.020\n",
-            "t;b\n0;995\n1;1.005\n2;990\n3;1.010\n",
             "t;b\n0;0\n1;1,200\n2;2,400\n",
             "t;b\n0,5;1,250\n1,5;980\n2,5;1,500\n",
             "t;b\n1;1,008,000\n",
@@ -552,13 +535,16 @@ mod tests {
             let error = column(text, "b").unwrap_err().to_string();
             assert!(error.contains("thousands"), "{text:?}: {error}");
         }
-        let error = columns("f", "t;b\n0.1;1,008\n0.2;1,020\n", &["t", "b"]);
-        assert!(error.unwrap_err().to_string().contains("thousands"));
+        for text in ["t;b\n0.1;1,008\n0.2;1,020\n", "t;b\n0,1;996\n0,2;1.008\n"] {
+            let error = columns("f", text, &["t", "b"]).unwrap_err().to_string();
+            assert!(error.contains("thousands"), "{error}");
+        }
         for (text, values) in [
             ("t;b\n1;0,996\n2;1,008\n", [0.996, 1.008]),
             ("t;b\n1;1,008\n2;1,020\n", [1.008, 1.02]),
             ("t;b;id\n1;1,008;2.1\n2;1,020;2.1\n", [1.008, 1.02]),
             ("t,b\n1,100\n2,100.125\n", [100.0, 100.125]),
+            ("t b\n1 300\n2 1.025\n", [300.0, 1.025]),
             ("t,b\n1,1.008\n2,1.020\n", [1.008, 1.02]),
             ("t;b\n0.5;1,08\n1;2\n", [1.08, 2.0]),
         ] {

@@ -30,7 +30,7 @@ pub struct Channel {
     /// Whether the channel's values have an absolute zero, so that a constant difference counts as an error.
     pub offset: Offset,
     /// Side on which the record limits the channel; `None` where the record is to be met.
-    pub limit: Option<Limit>,
+    pub limit: Option<ChannelLimit>,
     /// Measured record of the channel used for scoring; `None` if it was not measured.
     pub record: Option<ChannelRecord>,
 }
@@ -52,14 +52,14 @@ impl Channel {
 /// Side on which a record limits a channel: only values beyond the limit count as errors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Limit {
+pub enum ChannelLimit {
     /// The record is the greatest value that the channel may have.
     AtMost,
     /// The record is the least value that the channel may have.
     AtLeast,
 }
 
-impl Limit {
+impl ChannelLimit {
     /// Returns whether a difference, measured minus simulated, keeps the limit.
     pub fn holds(self, difference: f64) -> bool {
         match self {

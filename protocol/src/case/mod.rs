@@ -12,7 +12,7 @@ mod objective;
 mod unknown;
 
 pub use bad_unknown::{BadUnknown, check_unknowns};
-pub use channel::{Abscissa, Channel, ChannelRecord, Limit};
+pub use channel::{Abscissa, Channel, ChannelLimit, ChannelRecord};
 pub use condition::Condition;
 pub use effect::{EffectSetting, merged};
 pub use model::{ModelSettings, Reproducibility};

@@ -131,6 +131,8 @@ fn compared(
     let mean = measured.iter().sum::<f64>() / n;
     let deviation = measured.iter().map(|x| (x - mean).abs()).sum::<f64>() / n;
     let (range, deviation) = match peak_to_peak(measured) {
+        // residuals are compared with zeros, and errors with one unit
+        0.0 if mean == 0.0 => (2.0, 1.0),
         // a single number, or one that stays: what it is compared with is itself
         0.0 => (2.0 * mean.abs(), mean.abs()),
         range => (range, deviation),
@@ -255,7 +257,7 @@ fn residual_by(
 mod tests {
     use super::*;
     use protocol::{
-        case::{Abscissa, Limit},
+        case::{Abscissa, ChannelLimit},
         job::Per,
     };
 
@@ -328,8 +330,8 @@ mod tests {
             }],
         };
         for (limit, residual) in [
-            (Limit::AtMost, vec![0.0, 0.0, -1.0, -2.0]),
-            (Limit::AtLeast, vec![1.0, 2.0, 0.0, 0.0]),
+            (ChannelLimit::AtMost, vec![0.0, 0.0, -1.0, -2.0]),
+            (ChannelLimit::AtLeast, vec![1.0, 2.0, 0.0, 0.0]),
         ] {
             let mut own = channel("a", &[], Offset::Fixed);
             own.limit = Some(limit);

@@ -257,6 +257,18 @@ impl Assembly<'_> {
                 let stated = input.components.join(", ");
                 return Err(self.field_error(&way("components"), stated, allowed, help));
             }
+            let is_breaking = |text: &&String| text.contains(['"', '\n', '\r']);
+            if let Some(text) = input.components.iter().find(is_breaking) {
+                let allowed =
+                    "texts of one line without double quotes, which are signs of the file's form";
+                let help = "write the component without them";
+                return Err(self.field_error(
+                    &way("components"),
+                    text.escape_debug(),
+                    allowed,
+                    help,
+                ));
+            }
             let (form, names) = match (&input.template, &input.braces, &input.dakota) {
                 (Some(path), None, None) => {
                     let text = self.text(path, "a template that `inputs` names")?;

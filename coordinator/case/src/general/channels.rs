@@ -80,7 +80,8 @@ pub(super) fn read(
     conditions: &[ConditionEntry],
     place: &RecordSources<'_>,
 ) -> Result<Vec<ReadChannel>, CaseError> {
-    let mut tables = Tables::default();
+    let records = entries.iter().filter_map(|entry| entry.record.as_ref());
+    let mut tables = Tables::new(&records.collect::<Vec<_>>());
     let mut read = |(index, entry): (usize, &ChannelEntry)| {
         let way = [
             DocumentStep::Key("channels"),
@@ -275,6 +276,10 @@ impl ChannelReader<'_> {
         tables: &mut Tables,
     ) -> Result<record::ChannelData, CaseError> {
         let offset = self.entry.offset.unwrap_or(place.offset);
+        // single values that a program computes may be residuals, whose target is 0
+        let named = self.entry.source.as_ref();
+        let is_named = named.is_some_and(|source| source.contains_key("named"));
+        let may_be_constant = self.entry.limit.is_some() || (is_named && offset == Offset::Fixed);
         let read = match (&self.entry.record, &self.entry.abscissa.points) {
             (Some(entry), None) => {
                 let role = format!(
@@ -287,7 +292,7 @@ impl ChannelReader<'_> {
                 } else {
                     place.of(&entry.file)
                 };
-                record::read(tables, &path, (entry, offset), &role)?
+                record::read(tables, &path, (entry, may_be_constant), &role)?
             }
             (None, Some(points)) => record::ChannelData {
                 abscissa: self.spaced(*points)?,

@@ -3,7 +3,7 @@ use super::super::{
     diagnose::DiagnoseEntry, effect::CaseEffect, fitted_conditions::FittedConditions,
     loaded::Records, prior::PriorEntry,
 };
-use protocol::case::{Limit, Offset, Scale, Tie, Valley};
+use protocol::case::{ChannelLimit, Offset, Scale, Tie, Valley};
 use serde::Deserialize;
 use std::path::PathBuf;
 use toml::Table;
@@ -89,14 +89,13 @@ pub(super) struct ChannelEntry {
     /// values after removal of the mean difference (free); the objective's treatment unless stated.
     pub(super) offset: Option<Offset>,
     /// Side on which the record limits the channel, if it is not to be met.
-    pub(super) limit: Option<Limit>,
+    pub(super) limit: Option<ChannelLimit>,
     /// Part of the record that is held out from the fits of a diagnosis.
     #[serde(default)]
     pub(super) held_out: HeldOutEntry,
     pub(super) record: Option<RecordEntry>,
-    /// Source of the values in the output of a user's program; read by the kind `command` only.
-    #[serde(rename = "source")]
-    _source: Option<Table>,
+    /// Source of the values in the output of a user's program, for the kind `command`.
+    pub(super) source: Option<Table>,
 }
 
 /// Part of a record that is held out from the fits of a diagnosis.

@@ -5,6 +5,7 @@ use super::{
         effect::{self, CaseEffect},
         error::CaseError,
         loaded::{Loaded, Records},
+        names,
         note::Note,
         source::RecordFolder,
     },
@@ -32,6 +33,12 @@ pub fn read(source: &RecordFolder<'_>) -> Result<Loaded, CaseError> {
     let mut unknowns = unknowns::read(document, &file.unknowns)?;
     effect::check(document, &file.effects, &[])?;
     unknowns.extend(file.effects.iter().flat_map(CaseEffect::genes));
+    names::check_program_names(
+        document,
+        "unknowns",
+        "unknown",
+        &unknowns.iter().map(|own| &*own.name).collect::<Vec<_>>(),
+    )?;
     let objective = file.objective.as_ref();
     let place = RecordSources {
         folder,

@@ -8,9 +8,8 @@ use super::{
     file::RecordEntry,
 };
 use exchange::{decoded, table::Table};
-use protocol::case::Offset;
 use std::{
-    collections::BTreeMap,
+    collections::{BTreeMap, BTreeSet, btree_map::Entry},
     path::{Path, PathBuf},
 };
 
@@ -26,18 +25,31 @@ pub(super) struct ChannelData {
 }
 
 /// Tables of a case's records: a file that holds the records of many channels is read once.
-#[derive(Debug, Default)]
-pub(super) struct Tables(BTreeMap<(PathBuf, Vec<String>), SplitTable>);
-
-/// Table of records.
 #[derive(Debug)]
-struct SplitTable {
-    table: Table,
-    /// Rows that have the same text in the column by which the case selects them; all rows under an empty text otherwise.
-    rows: BTreeMap<String, Vec<usize>>,
+pub(super) struct Tables {
+    /// Names of the columns of numbers that the case needs of each file, by the path that it states.
+    needed: BTreeMap<PathBuf, BTreeSet<String>>,
+    /// Tables that have been read.
+    read: BTreeMap<PathBuf, Table>,
+    /// Rows of a table by their text in a column by which the case selects them.
+    rows: BTreeMap<(PathBuf, String), BTreeMap<String, Vec<usize>>>,
 }
 
 impl Tables {
+    /// Creates an empty store for the records of some channels.
+    pub(super) fn new(entries: &[&RecordEntry]) -> Self {
+        let mut needed: BTreeMap<PathBuf, BTreeSet<String>> = BTreeMap::new();
+        for entry in entries {
+            let of_file = needed.entry(entry.file.clone()).or_default();
+            of_file.extend(columns(entry).map(str::to_owned));
+        }
+        Self {
+            needed,
+            read: BTreeMap::new(),
+            rows: BTreeMap::new(),
+        }
+    }
+
     /// Reads the columns of a record that its entry names.
     fn columns(
         &mut self,
@@ -45,41 +57,42 @@ impl Tables {
         entry: &RecordEntry,
         role: &str,
     ) -> Result<CsvTable, CaseError> {
-        let selected = entry.rows.as_ref();
-        let named = [Some(&entry.at), Some(&entry.column)].into_iter();
-        let named = named.chain([entry.cycle.as_ref(), entry.weight.as_ref()]);
-        let named: Vec<&str> = named.flatten().map(String::as_str).collect();
-        let needed = named.iter().copied();
-        let needed = needed.chain(selected.map(|rows| rows.column.as_str()));
-        let needed: Vec<&str> = needed.collect();
-        let key = (
-            path.to_owned(),
-            needed.iter().map(|&name| name.to_owned()).collect(),
-        );
-        let split = match self.0.entry(key) {
-            std::collections::btree_map::Entry::Occupied(known) => known.into_mut(),
-            std::collections::btree_map::Entry::Vacant(new) => {
-                let bytes = if file::is_packed(path) {
-                    file::read_gzip(path, role)?
-                } else {
-                    file::read(path, role)?
-                };
-                let table = Table::parse(&decoded(&bytes), &needed);
-                let column = selected.map(|rows| &rows.column);
-                new.insert(SplitTable {
-                    rows: rows_by(path, &table, column)?,
-                    table,
-                })
+        let named: Vec<&str> = columns(entry).collect();
+        if !self.read.contains_key(path) {
+            let bytes = if file::is_packed(path) {
+                file::read_gzip(path, role)?
+            } else {
+                file::read(path, role)?
+            };
+            let all = self.needed.get(&entry.file).into_iter().flatten();
+            let all: Vec<&str> = all.map(String::as_str).collect();
+            let text = decoded(&bytes);
+            let mut table = Table::parse(&text, &all);
+            // a name that another channel misspells must not hide the header from this one
+            if named.iter().any(|name| table.column(name).is_none()) {
+                table = Table::parse(&text, &named);
             }
+            self.read.insert(path.to_owned(), table);
+        }
+        let Some(table) = self.read.get(path) else {
+            return Err(damaged(path, "the file was not read", "try again"));
         };
-        let word = selected.map_or("", |rows| rows.is.as_str());
-        match split.rows.get(word) {
-            Some(rows) => CsvTable::select(path, &split.table, rows, (&named, &[])),
+        let Some(selected) = &entry.rows else {
+            let rows: Vec<usize> = (0..table.len()).collect();
+            return CsvTable::select(path, table, &rows, (&named, &[]));
+        };
+        let key = (path.to_owned(), selected.column.clone());
+        let rows = match self.rows.entry(key) {
+            Entry::Occupied(known) => known.into_mut(),
+            Entry::Vacant(new) => new.insert(rows_by(path, table, &selected.column)?),
+        };
+        match rows.get(&selected.is) {
+            Some(rows) => CsvTable::select(path, table, rows, (&named, &[])),
             None => Err(damaged(
                 path,
                 format!(
-                    "no row has `{word}` in column `{}`",
-                    selected.map_or("", |rows| &rows.column)
+                    "no row has `{}` in column `{}`",
+                    selected.is, selected.column
                 ),
                 "correct the word in `rows`, or add the rows",
             )),
@@ -87,21 +100,24 @@ impl Tables {
     }
 }
 
-/// Returns the rows of a table by their text in a column; all of them under an empty text if there is no such column.
+/// Returns the names of the columns of numbers that a record has: abscissa, values, cycles, weights.
+fn columns(entry: &RecordEntry) -> impl Iterator<Item = &str> {
+    let named = [Some(&entry.at), Some(&entry.column)].into_iter();
+    let named = named.chain([entry.cycle.as_ref(), entry.weight.as_ref()]);
+    named.flatten().map(String::as_str)
+}
+
+/// Returns the rows of a table by their text in a column.
 fn rows_by(
     path: &Path,
     table: &Table,
-    column: Option<&String>,
+    column: &str,
 ) -> Result<BTreeMap<String, Vec<usize>>, CaseError> {
     let mut rows: BTreeMap<String, Vec<usize>> = BTreeMap::new();
-    let Some(column) = column else {
-        rows.insert(String::new(), (0..table.len()).collect());
-        return Ok(rows);
-    };
     let Some(at) = table.column(column) else {
         return Err(CaseError::Column {
             path: path.into(),
-            column: column.as_str().into(),
+            column: column.into(),
             found: table.names.join(", ").into(),
             help: "`rows` names a column of words".into(),
         });
@@ -116,16 +132,17 @@ fn rows_by(
     Ok(rows)
 }
 
-/// Reads a record whose values have an absolute zero or not.
+/// Reads a record.
 ///
 /// # Errors
 /// Returns an error for a missing file or column, cells that are not numbers, abscissa points that do not
 /// ascend or differ between cycles, cycle numbers that are not whole or decrease, weights that are not
-/// positive, and unweighted values that are all equal, unless they are residuals: zeros with an absolute zero.
+/// positive, and unweighted values that are all equal unless they `may_be_constant`: limits, and the zeros with which residuals
+/// are compared.
 pub(super) fn read(
     tables: &mut Tables,
     path: &Path,
-    (entry, offset): (&RecordEntry, Offset),
+    (entry, may_be_constant): (&RecordEntry, bool),
     role: &str,
 ) -> Result<ChannelData, CaseError> {
     let table = tables.columns(path, entry, role)?;
@@ -155,10 +172,9 @@ pub(super) fn read(
         check_weights(path, &table, weights, length)?;
     }
     let first = values.first().copied().unwrap_or_default();
-    let is_residual = first == 0.0 && offset == Offset::Fixed;
     // values that are weighted may be those of different things
     if weights.is_none()
-        && !is_residual
+        && !may_be_constant
         && values.len() > 1
         && values.iter().all(|value| value.total_cmp(&first).is_eq())
     {

@@ -41,7 +41,7 @@ pub(super) const FAULTS: &[Fault] = &[
         CASE,
         "name = \"offset\"",
         "name = \"off set\"",
-        &["`unknowns[2].name` = \"off set\"", "letters, digits"],
+        &["`unknowns[2].name` = \"off set\"", "without blanks"],
     ),
     (
         "crossed bounds",

@@ -165,7 +165,7 @@ fn require_equalities(case: &Case) -> Result<(), Problem> {
     limits.next().map_or(Ok(()), |channel| {
         Err(Problem {
             message: format!(
-                "channel `{}` is a limit, which only `calibrate` and `simulate` can use",
+                "channel `{}` is a limit, which `diagnose` and `identify` cannot use",
                 channel.name
             ),
             remedy: "work on a copy of the case without its channels with `limit`, and without their terms of the objective"

@@ -28,10 +28,12 @@ pub fn results(file: &str, text: &str, functions: &[String]) -> Result<Results, 
     if is_fail {
         return Ok(Results::Fail);
     }
-    let (values, rest) = match text.find('[') {
-        Some(at) => text.split_at(at),
-        None => (text, ""),
-    };
+    // a label may have brackets itself
+    let mut lines = text.split_inclusive('\n');
+    let before = lines
+        .by_ref()
+        .take_while(|line| !line.trim_start().starts_with('['));
+    let (values, rest) = text.split_at(before.map(str::len).sum());
     let lines = values
         .lines()
         .enumerate()

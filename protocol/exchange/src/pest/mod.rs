@@ -11,8 +11,8 @@ mod report;
 mod template;
 
 pub use control::{
-    Control, FilePair, IncrementKind, Observation, Parameter, ParameterGroup, PriorInformation,
-    PriorTerm, Side, Transform,
+    Control, FilePair, IncrementKind, LimitSide, Observation, Parameter, ParameterGroup,
+    PriorInformation, PriorTerm, Transform,
 };
 pub use digits::fit;
 pub use instruction::Instructions;

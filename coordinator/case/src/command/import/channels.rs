@@ -1,6 +1,6 @@
 //! Conversion of PEST observations to channels: one channel for each observation group, with the observation
 //! number as abscissa. Observations of zero weight form predicted channels without a measured record.
-use exchange::pest::{Control, Side};
+use exchange::pest::{Control, LimitSide};
 use std::collections::{BTreeMap, BTreeSet};
 use toml_edit::{Array, ArrayOfTables, InlineTable, Table, Value, value};
 
@@ -48,7 +48,7 @@ pub(super) fn groups(control: &Control) -> Vec<Group<'_>> {
     let observations = observations.map(|it| (&*it.group, false, &*it.name, it.value, it.weight));
     let prior = control.prior.iter().map(|it| {
         // prior information of one group is a limit, of all others one channel
-        let is_limit = Side::of_group(&it.group).is_some();
+        let is_limit = LimitSide::of_group(&it.group).is_some();
         let group = if is_limit { &*it.group } else { PRIOR };
         (group, true, &*it.name, it.value, it.weight)
     });
@@ -148,10 +148,10 @@ fn channel(group: &Group<'_>, condition: &str, file: &str) -> Table {
     if group.is_measured {
         // weights are taken for inverse standard deviations
         table.insert("noise", value(1.0));
-        if let Some(side) = Side::of_group(group.title) {
+        if let Some(side) = LimitSide::of_group(group.title) {
             let limit = match side {
-                Side::AtMost => "at_most",
-                Side::AtLeast => "at_least",
+                LimitSide::AtMost => "at_most",
+                LimitSide::AtLeast => "at_least",
             };
             table.insert("limit", value(limit));
         }

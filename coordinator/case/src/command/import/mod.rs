@@ -70,7 +70,7 @@ pub fn import(control: &Path, to: Option<&Path>) -> Result<Imported, ImportError
     };
     let read = Control::parse(&control.display().to_string(), &text, &open)?;
     let mut notes = read.notes.clone();
-    if let Some(line) = read.commands.iter().find(|line| line.contains('\\')) {
+    if let Some(line) = read.commands.iter().find(|line| is_of_windows(line)) {
         notes.push(format!(
             "the model command line `{line}` is that of a Windows program: change `command` in case.toml to one that runs on \
              the workers"
@@ -203,13 +203,21 @@ fn plain_path(path: &str) -> String {
     path.trim_start_matches("./").to_owned()
 }
 
+/// Returns whether a command line has a path of Windows: a backslash that escapes neither a blank nor a sign.
+fn is_of_windows(line: &str) -> bool {
+    let mut behind = line.split('\\').skip(1);
+    behind.any(|part| part.starts_with(|letter: char| letter.is_alphanumeric() || letter == '.'))
+}
+
 /// Splits the command line of a PEST control file into words; several lines, or a line with shell syntax, are
 /// passed to `/bin/sh -c`.
 fn command(lines: &[String]) -> Vec<String> {
     let shell = |text: &str| text.contains(['|', '>', '<', '&', ';', '$', '`']);
     match lines {
         // a path of Windows, whose backslashes are no escapes
-        [one] if one.contains('\\') => one.split_whitespace().map(str::to_owned).collect(),
+        [one] if is_of_windows(one) && !shell(one) => {
+            one.split_whitespace().map(str::to_owned).collect()
+        }
         [one] if !shell(one) => shlex::split(one).unwrap_or_else(|| vec![one.clone()]),
         more => vec!["/bin/sh".to_owned(), "-c".to_owned(), more.join(" && ")],
     }

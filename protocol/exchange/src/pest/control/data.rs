@@ -2,7 +2,8 @@
 use super::{
     lines::{Lines, Section},
     model::{
-        Control, FilePair, IncrementKind, Observation, Parameter, ParameterGroup, Side, Transform,
+        Control, FilePair, IncrementKind, LimitSide, Observation, Parameter, ParameterGroup,
+        Transform,
     },
     prior,
     rows::{Row, rows},
@@ -286,9 +287,9 @@ fn observation_groups(lines: &Lines, open: Open<'_>, control: &mut Control) -> R
     let counted = observed.chain(priors).filter(|(_, weight)| *weight > 0.0);
     let limits: BTreeSet<(&str, &str)> = counted
         .filter_map(|(group, _)| {
-            let words = match Side::of_group(group)? {
-                Side::AtMost => "exceeds",
-                Side::AtLeast => "stays below",
+            let words = match LimitSide::of_group(group)? {
+                LimitSide::AtMost => "exceeds",
+                LimitSide::AtLeast => "stays below",
             };
             Some((group.as_str(), words))
         })

@@ -14,8 +14,8 @@ mod rows;
 mod tests;
 
 pub use model::{
-    Control, FilePair, IncrementKind, Observation, Parameter, ParameterGroup, PriorInformation,
-    PriorTerm, Side, Transform,
+    Control, FilePair, IncrementKind, LimitSide, Observation, Parameter, ParameterGroup,
+    PriorInformation, PriorTerm, Transform,
 };
 
 use crate::Problem;

@@ -93,16 +93,16 @@ pub struct Observation {
     pub group: String,
 }
 
-/// Side on which the observations of a group limit the model, by the beginning of the group's name.
+/// LimitSide on which the observations of a group limit the model, by the beginning of the group's name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Side {
+pub enum LimitSide {
     /// Upper limit: a residual only where the model exceeds the observation (`less..`, `l_..`, `>@..`).
     AtMost,
     /// Lower limit: a residual only where the model stays below the observation (`greater..`, `g_..`, `<@..`).
     AtLeast,
 }
 
-impl Side {
+impl LimitSide {
     /// Returns the side of an observation group; `None` for equalities.
     pub fn of_group(name: &str) -> Option<Self> {
         let begins = |words: [&str; 3]| words.iter().any(|word| name.starts_with(word));
