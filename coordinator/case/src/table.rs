@@ -1,6 +1,6 @@
 //! Columns of numbers from tables in files: named columns, finite numbers, rows counted as lines of the file.
 use super::error::{CaseError, damaged};
-use exchange::{decoded, table::Table};
+use exchange::{decoded, table::TextTable};
 use std::path::Path;
 
 /// Requested columns of a CSV table, in the order of the request.
@@ -41,7 +41,7 @@ impl CsvTable {
         wanted: &[&str],
         optional: &[&str],
     ) -> Result<Self, CaseError> {
-        let table = Table::parse(&decoded(bytes), wanted);
+        let table = TextTable::parse(&decoded(bytes), wanted);
         let rows: Vec<usize> = (0..table.len()).collect();
         Self::select(path, &table, &rows, (wanted, optional))
     }
@@ -52,7 +52,7 @@ impl CsvTable {
     /// As [`Self::read_with`].
     pub(crate) fn select(
         path: &Path,
-        table: &Table,
+        table: &TextTable,
         rows: &[usize],
         (wanted, optional): (&[&str], &[&str]),
     ) -> Result<Self, CaseError> {

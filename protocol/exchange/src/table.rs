@@ -12,7 +12,7 @@ const PREAMBLE: usize = 200;
 /// needed columns; lines before it are a preamble of the program that wrote the table. A row of units below the header is left
 /// out, as are empty rows.
 #[derive(Clone, Debug)]
-pub struct Table {
+pub struct TextTable {
     /// Names of the columns.
     pub names: Vec<String>,
     /// Rows of the table, in the order of the file.
@@ -176,7 +176,7 @@ fn header(text: &str, needed: &[&str]) -> Option<Header> {
     })
 }
 
-impl Table {
+impl TextTable {
     /// Splits a text into a table; `needed` are names that the header must contain. Without a line that contains them the
     /// first line that is not empty is the header.
     pub fn parse(text: &str, needed: &[&str]) -> Self {
@@ -410,9 +410,9 @@ fn grouped(cell: &str, mark: char) -> bool {
 /// Returns the numbers of the named columns of a table, in the order of the names.
 ///
 /// # Errors
-/// A table without the columns, with one of them twice or without rows, and what [`Table::numbers`] refuses.
+/// A table without the columns, with one of them twice or without rows, and what [`TextTable::numbers`] refuses.
 pub fn columns(file: &str, text: &str, names: &[&str]) -> Result<Vec<Vec<f64>>, Problem> {
-    let table = Table::parse(text, names);
+    let table = TextTable::parse(text, names);
     let problem = |line, found: &str, allowed: &str, remedy: &str| Problem {
         file: file.to_owned(),
         line,
@@ -456,7 +456,7 @@ pub fn columns(file: &str, text: &str, names: &[&str]) -> Result<Vec<Vec<f64>>, 
 
 #[cfg(test)]
 mod tests {
-    use super::{Table, columns};
+    use super::{TextTable, columns};
     use crate::Problem;
 
     fn column(text: &str, name: &str) -> Result<Vec<f64>, Problem> {
@@ -554,7 +554,7 @@ mod tests {
 
     #[test]
     fn rows_are_counted_as_lines_of_the_file() {
-        let table = Table::parse("\n# x,y\n\n1,2\n\r\n\r\n3,4\n,\n5,6", &["x"]);
+        let table = TextTable::parse("\n# x,y\n\n1,2\n\r\n\r\n3,4\n,\n5,6", &["x"]);
         let lines: Vec<usize> = (0..table.len()).map(|row| table.line(row)).collect();
         assert_eq!(lines, [4, 7, 9]);
         assert_eq!(table.numbers(1, &[2]).unwrap(), [6.0]);

@@ -7,7 +7,7 @@ use super::{
     },
     file::RecordEntry,
 };
-use exchange::{decoded, table::Table};
+use exchange::{decoded, table::TextTable};
 use std::{
     collections::{BTreeMap, BTreeSet, btree_map::Entry},
     path::{Path, PathBuf},
@@ -30,7 +30,7 @@ pub(super) struct Tables {
     /// Names of the columns of numbers that the case needs of each file, by the path that it states.
     needed: BTreeMap<PathBuf, BTreeSet<String>>,
     /// Tables that have been read.
-    read: BTreeMap<PathBuf, Table>,
+    read: BTreeMap<PathBuf, TextTable>,
     /// Rows of a table by their text in a column by which the case selects them.
     rows: BTreeMap<(PathBuf, String), BTreeMap<String, Vec<usize>>>,
 }
@@ -67,10 +67,10 @@ impl Tables {
             let all = self.needed.get(&entry.file).into_iter().flatten();
             let all: Vec<&str> = all.map(String::as_str).collect();
             let text = decoded(&bytes);
-            let mut table = Table::parse(&text, &all);
+            let mut table = TextTable::parse(&text, &all);
             // a name that another channel misspells must not hide the header from this one
             if named.iter().any(|name| table.column(name).is_none()) {
-                table = Table::parse(&text, &named);
+                table = TextTable::parse(&text, &named);
             }
             self.read.insert(path.to_owned(), table);
         }
@@ -110,7 +110,7 @@ fn columns(entry: &RecordEntry) -> impl Iterator<Item = &str> {
 /// Returns the rows of a table by their text in a column.
 fn rows_by(
     path: &Path,
-    table: &Table,
+    table: &TextTable,
     column: &str,
 ) -> Result<BTreeMap<String, Vec<usize>>, CaseError> {
     let mut rows: BTreeMap<String, Vec<usize>> = BTreeMap::new();

@@ -124,13 +124,6 @@ pub(super) const FAULTS: &[Fault] = &[
         &["`unknowns[0].start`", "finite"],
     ),
     (
-        "a name of an effect's parameter",
-        CASE,
-        "name = \"offset\"",
-        "name = \"drift.offset\"",
-        &["`unknowns[2].name` = \"drift.offset\"", "without `.`"],
-    ),
-    (
         "two channels of one name under one condition",
         CASE,
         "name = \"speed\"",

@@ -11,7 +11,10 @@ fn a_parameter_of_an_effect_is_shown_beside_the_coefficients() {
     case.effects = vec![EffectSetting::new("load_offset", &[("force", 0.0)])];
     let bounds = [-900.0, 2100.0];
     let force = Unknown::new("load_offset.force", "N", Scale::Linear, 0.0, bounds);
-    case.unknowns.push(force);
+    case.unknowns.push(Unknown {
+        is_effect: true,
+        ..force
+    });
     calibration.recommended.genes.push(0.0);
     calibration.optimised.genes.push(-899.0);
     for (number, point) in (0..).zip(&mut calibration.history) {

@@ -40,7 +40,7 @@ fn a_fit_that_leaves_a_multiple_of_the_noise_has_no_intervals() {
             }
         }
         let page = report::text(&report::calibration(&data), TerminalStyle::default());
-        let interval = "5.25\u{a0}×\u{a0}10⁸\u{a0}N/m to 9.75";
+        let interval = "5.25\u{a0}×\u{a0}10⁸ to 9.75\u{a0}×\u{a0}10⁸\u{a0}N/m";
         assert_eq!(page.contains(interval), expected, "{page}");
         assert_eq!(page.contains("what the record says, 95 %"), expected);
         let reason = "4.0 times the noise is left: the model lacks something, and no unknown has an interval";

@@ -1,6 +1,6 @@
-//! Table of individuals: a CSV file with a column for each unknown that a case searches.
+//! TextTable of individuals: a CSV file with a column for each unknown that a case searches.
 use case::{CaseError, file, table::CsvTable};
-use exchange::{decoded, table::Table};
+use exchange::{decoded, table::TextTable};
 use search::space::{Axis, Space};
 use std::path::Path;
 use store::gene_column;
@@ -28,7 +28,7 @@ impl Individuals {
         let bytes = file::read(path, "the table of individuals that was asked for")?;
         let names = space.axes().iter().map(|axis| axis.unknown.name.as_str());
         let names: Vec<&str> = names.collect();
-        let header = Table::parse(&decoded(&bytes), &[]).names;
+        let header = TextTable::parse(&decoded(&bytes), &[]).names;
         let has = |name: &str| header.iter().any(|column| column == name);
         // tables that were exported name a column by its unit, too
         let named: Vec<String> = space

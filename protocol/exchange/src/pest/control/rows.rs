@@ -1,6 +1,6 @@
 //! Rows of a control file's tables: the words of a line, or the cells of a CSV file under its header.
 use super::lines::{Lines, Section};
-use crate::{Problem, number, problem::clip, table::Table};
+use crate::{Problem, number, problem::clip, table::TextTable};
 use std::collections::BTreeMap;
 
 /// Row of a table in a control file: its file and line, and its cells by column name.
@@ -147,7 +147,7 @@ fn files(
         }
         let text = open(file)
             .map_err(|error| refused(format!("{file}: {error}"), "a file that can be read"))?;
-        let table = Table::parse(&text, &[]);
+        let table = TextTable::parse(&text, &[]);
         let names: Vec<String> = table.names.iter().map(|name| name.to_lowercase()).collect();
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
         for row in 0..table.len() {
