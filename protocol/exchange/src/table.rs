@@ -161,7 +161,9 @@ fn header(text: &str, needed: &[&str]) -> Option<Header> {
         let (next, after) = (below.next(), below.next());
         let is_title = next.is_some_and(|next| candidate(next).is_some()) && !needed.is_empty();
         let mut rows = next.into_iter().chain(after.filter(|_| !is_title));
-        if rows.any(|(_, line)| is_row(&found, line)) {
+        // without names to go by, the first line that is no comment
+        let is_first = needed.is_empty() && !line.trim_start().starts_with(['#', '%']);
+        if is_first || rows.any(|(_, line)| is_row(&found, line)) {
             return Some(found);
         }
         // where no candidate stands above numbers, the first that is no title has to say so
