@@ -235,6 +235,28 @@ impl Assembly<'_> {
         Ok(())
     }
 
+    /// Checks the analysis components of an input file.
+    fn check_components(
+        &self,
+        way: &[DocumentStep<'_>],
+        input: &InputEntry,
+    ) -> Result<(), CaseError> {
+        if input.dakota.is_none() && !input.components.is_empty() {
+            let allowed = "absent, unless the file is a parameters file of Dakota";
+            let help = "state `dakota` for the file, or remove `components`";
+            let stated = input.components.join(", ");
+            return Err(self.field_error(way, stated, allowed, help));
+        }
+        let is_breaking = |text: &&String| text.contains(['"', '\n', '\r']);
+        if let Some(text) = input.components.iter().find(is_breaking) {
+            let allowed =
+                "texts of one line without double quotes, which are signs of the file's form";
+            let help = "write the component without them";
+            return Err(self.field_error(way, text.escape_debug(), allowed, help));
+        }
+        Ok(())
+    }
+
     fn input_files(
         &self,
         known: &BTreeSet<String>,
@@ -251,24 +273,7 @@ impl Assembly<'_> {
                     DocumentStep::Key(key),
                 ]
             };
-            if input.dakota.is_none() && !input.components.is_empty() {
-                let allowed = "absent, unless the file is a parameters file of Dakota";
-                let help = "state `dakota` for the file, or remove `components`";
-                let stated = input.components.join(", ");
-                return Err(self.field_error(&way("components"), stated, allowed, help));
-            }
-            let is_breaking = |text: &&String| text.contains(['"', '\n', '\r']);
-            if let Some(text) = input.components.iter().find(is_breaking) {
-                let allowed =
-                    "texts of one line without double quotes, which are signs of the file's form";
-                let help = "write the component without them";
-                return Err(self.field_error(
-                    &way("components"),
-                    text.escape_debug(),
-                    allowed,
-                    help,
-                ));
-            }
+            self.check_components(&way("components"), input)?;
             let (form, names) = match (&input.template, &input.braces, &input.dakota) {
                 (Some(path), None, None) => {
                     let text = self.text(path, "a template that `inputs` names")?;

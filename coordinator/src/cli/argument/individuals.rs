@@ -1,4 +1,4 @@
-//! TextTable of individuals: a CSV file with a column for each unknown that a case searches.
+//! Table of individuals: a CSV file with a column for each unknown that a case searches.
 use case::{CaseError, file, table::CsvTable};
 use exchange::{decoded, table::TextTable};
 use search::space::{Axis, Space};

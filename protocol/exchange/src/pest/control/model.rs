@@ -93,7 +93,7 @@ pub struct Observation {
     pub group: String,
 }
 
-/// LimitSide on which the observations of a group limit the model, by the beginning of the group's name.
+/// Side on which the observations of a group limit the model, by the beginning of the group's name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LimitSide {
     /// Upper limit: a residual only where the model exceeds the observation (`less..`, `l_..`, `>@..`).
