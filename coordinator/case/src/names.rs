@@ -31,16 +31,12 @@ pub fn check_program_names(
     let plain = |c: char| c.is_ascii_graphic() && !",\"'`{}=#\\".contains(c);
     check_list(document, (list, what), names, |way, name, is_there| {
         // the key under which gene files state effects
-        let is_key = name == "effects";
-        if name.is_empty() || is_key || !name.chars().all(plain) {
-            return Err(document.field(
-                way,
-                format!("\"{name}\""),
-                "a name other than `effects`, without blanks, commas, quotes, braces, `=`, `#` and `\\`",
-                "the name is a key of gene files and is typed on command lines, as `stiffness`",
-            ));
-        }
-        unique(document, way, what, name, is_there)
+        let is_allowed = name != "effects" && name.chars().all(plain);
+        let words = (
+            "a name other than `effects`, without blanks, commas, quotes, braces, `=`, `#` and `\\`",
+            "the name is a key of gene files and is typed on command lines, as `stiffness`",
+        );
+        check_name(document, way, what, (name, is_allowed, is_there), words)
     })
 }
 
@@ -82,29 +78,31 @@ pub fn check_one(
     is_there: bool,
 ) -> Result<(), CaseError> {
     let plain = |c: char| c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.');
-    let quoted = format!("\"{name}\"");
-    if name.is_empty() || !name.chars().all(plain) {
-        return Err(document.field(
-            way,
-            quoted,
-            "a short name of letters, digits, `-`, `_` and `.`",
-            "the name is typed on command lines and becomes part of file names, as `5rpm`",
-        ));
-    }
-    unique(document, way, what, name, is_there)
+    let is_allowed = name.chars().all(plain);
+    let words = (
+        "a short name of letters, digits, `-`, `_` and `.`",
+        "the name is typed on command lines and becomes part of file names, as `5rpm`",
+    );
+    check_name(document, way, what, (name, is_allowed, is_there), words)
 }
 
-fn unique(
+/// Checks that a name is not empty, has only allowed characters and is that of no earlier table; `allowed` and `help` are the
+/// words about its characters.
+fn check_name(
     document: &Document,
     way: &[DocumentStep<'_>],
     what: &str,
-    name: &str,
-    is_there: bool,
+    (name, is_allowed, is_there): (&str, bool, bool),
+    (allowed, help): (&str, &str),
 ) -> Result<(), CaseError> {
+    let quoted = format!("\"{name}\"");
+    if name.is_empty() || !is_allowed {
+        return Err(document.field(way, quoted, allowed, help));
+    }
     if is_there {
         return Err(document.field(
             way,
-            format!("\"{name}\""),
+            quoted,
             format!("a name that no other {what} has"),
             &format!("duplicate {what}: rename or remove one of the two"),
         ));

@@ -25,7 +25,7 @@ pub(super) struct HiddenStep {
     pub(super) value: f64,
     /// Value after the step.
     pub(super) moved: f64,
-    /// Least width of a field that shows the step with at least one digit (characters).
+    /// Least width of a field from which the step can be read with an error of at most [`STEP_ERROR`] (characters).
     pub(super) needed: usize,
 }
 
@@ -41,13 +41,13 @@ pub(super) fn hidden_step(
     let steps: Vec<[f64; 2]> = steps(unknown)
         .map(|pair| pair.map(|value| parameter.factor * ratio * value + parameter.offset))
         .collect();
-    let shows = |width: usize, [value, moved]: [f64; 2], within: f64| {
+    let shows = |width: usize, [value, moved]: [f64; 2]| {
         let texts = [value, moved].map(|value| fit(value, width));
         let [Some(before), Some(after)] = texts.each_ref().map(|text| number(text.as_deref()?))
         else {
             return false;
         };
-        ((after - before) / (moved - value) - 1.0).abs() <= within
+        ((after - before) / (moved - value) - 1.0).abs() <= STEP_ERROR
     };
     // one digit that differs is enough for a search to see the unknown
     let hidden = steps.iter().find(|pair| {
@@ -55,7 +55,7 @@ pub(super) fn hidden_step(
         texts[0].is_none() || texts[0] == texts[1]
     })?;
     let mut widths = field.width + 1..=FULL_WIDTH;
-    let is_wide = |width: &usize| steps.iter().all(|pair| shows(*width, *pair, STEP_ERROR));
+    let is_wide = |width: &usize| steps.iter().all(|pair| shows(*width, *pair));
     Some(HiddenStep {
         value: hidden[0],
         moved: hidden[1],
