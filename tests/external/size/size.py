@@ -1,7 +1,8 @@
 """Measures import and descent of a large PEST project: a linear model of ten parameters with many observations in many groups.
 
-    python3 size.py HORSEHEAD WORKER OBSERVATIONS GROUPS [--descent]
+    python3 size.py PROGRAMS OBSERVATIONS GROUPS [--descent]
 
+PROGRAMS is the folder of `horsehead` and `horsehead-worker`.
 Prints the wall time of `case import` (which checks the case) and of `case check`, and with `--descent` the time of `calibrate
 --preset descent`, the greatest resident memory of coordinator and workers, and the size of the journal.
 """
@@ -42,8 +43,8 @@ def project(folder, observations, groups):
     write("y.ins", "pif ~\n" + "".join(f"l1 !o{at}!\n" for at in range(observations)))
 
 
-program, worker = (os.path.abspath(path) for path in sys.argv[1:3])
-observations, groups = int(sys.argv[3]), int(sys.argv[4])
+program, worker = (os.path.abspath(os.path.join(sys.argv[1], name)) for name in ("horsehead", "horsehead-worker"))
+observations, groups = int(sys.argv[2]), int(sys.argv[3])
 with tempfile.TemporaryDirectory() as folder:
     project(folder, observations, groups)
     environment = dict(os.environ, HORSEHEAD_WORKER=worker, HORSEHEAD_ALLOW=os.path.join(folder, "allow.toml"))
