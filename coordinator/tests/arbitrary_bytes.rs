@@ -15,7 +15,8 @@
 mod property;
 
 use case::{Overrides, load};
-use dispatch::journal::{MARK, ReadReport};
+use journal::event::Event;
+use journal::{MARK, ReadReport};
 use property::{
     file::{
         are_genes_or_refused, are_samples_or_refused, is_a_card_or_refused, is_a_case_or_refused,
@@ -24,7 +25,7 @@ use property::{
     wire::is_canonical,
 };
 use proptest::{collection::vec, prelude::*};
-use protocol::{case::Case, event::Event, wire};
+use protocol::{case::Case, wire};
 use std::{path::Path, sync::LazyLock};
 
 static CASE: LazyLock<Case> = LazyLock::new(|| {

@@ -36,6 +36,23 @@ number!(
     WorkerId(u64),
     "{:016x}"
 );
+
+impl AttemptId {
+    /// Attempt id of a failure that the coordinator itself records, without any dispatch to a worker.
+    pub const COORDINATOR: Self = Self(u32::MAX);
+
+    /// Creates the id of an attempt from the epoch (number of the coordinator process, from 1) and the number of
+    /// earlier dispatches of the job by that process; ids of different processes of a run never coincide.
+    pub const fn new(epoch: u32, number: u32) -> Self {
+        Self(epoch << 16 | (number & 0xffff))
+    }
+
+    /// Returns the epoch and the number of which [`AttemptId::new`] made the id; `None` for a failure that the
+    /// coordinator itself recorded.
+    pub fn epoch_and_number(self) -> Option<(u32, u32)> {
+        (self != Self::COORDINATOR).then_some((self.0 >> 16, self.0 & 0xffff))
+    }
+}
 number!(
     /// Id of a run, the same in all its coordinator processes; drawn when its journal is created.
     RunId(u64),

@@ -5,7 +5,6 @@
 pub mod announce;
 pub mod case;
 pub mod curve;
-pub mod event;
 pub mod external;
 pub mod file;
 pub mod id;

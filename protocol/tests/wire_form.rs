@@ -6,7 +6,6 @@
 use protocol::{
     announce::{Place, Role, Sign},
     case::{Case, ChannelLimit, Offset, Reproducibility, Scale},
-    event::Event,
     id::{AttemptId, ContentHash, JobId, RunId},
     job::{Answer, Derivative, Failure, Job, Outcome, Per, Reached, Reply, Verdict},
     message::{Attempt, FromSlot, FromWorker, Heartbeat, ToSlot, ToWorker},
@@ -20,8 +19,8 @@ use protocol::{
 use serde_reflection::{Samples, Tracer, TracerConfig};
 use std::{fs, path::Path};
 
-/// Returns the expected content of `wire_form.txt`: one line for each type that is part of a message, a case
-/// or the journal.
+/// Returns the expected content of `wire_form.txt`: one line for each type that is part of a message or a
+/// case.
 fn form() -> String {
     let mut tracer = Tracer::new(TracerConfig::default());
     let samples = Samples::new();
@@ -32,7 +31,7 @@ fn form() -> String {
             $(tracer.trace_type::<$type>(&samples).expect("a form");)*
         };
     }
-    trace!(ToWorker FromWorker ToSlot FromSlot Event Case Machine);
+    trace!(ToWorker FromWorker ToSlot FromSlot Case Machine);
     trace!(Simulation Discretisation ReduceHeadSpec ReducedHead);
     trace!(Job Reply Answer Outcome Failure Verdict Reached Derivative Per ModeFamily ElementKind);
     trace!(Place Role Sign Scale Integrator Offset RopeEnds Smoothing StressRecovery);

@@ -24,6 +24,7 @@ const ARROWS: &[(&str, &str)] = &[
     // loops over whoever evaluates
     ("study", "protocol"),
     ("study", "dispatch"),
+    ("study", "journal"),
     ("study", "search"),
     ("study", "discrepancy"),
     // its tests take the shipped case for an example
@@ -33,14 +34,13 @@ const ARROWS: &[(&str, &str)] = &[
     ("report", "exchange"),
     ("report", "case"),
     ("report", "discrepancy"),
-    ("report", "dispatch"),
+    ("report", "journal"),
     ("report", "study"),
     ("report", "support"),
     // its tests fit a model
     ("report", "search"),
     ("store", "protocol"),
-    ("store", "dispatch"),
-    ("store", "study"),
+    ("store", "journal"),
     ("store", "case"),
     // serves pages, whatever runs they are of
     ("dashboard", "report"),
@@ -51,6 +51,11 @@ const ARROWS: &[(&str, &str)] = &[
     ("coordinator", "case"),
     ("coordinator", "launch"),
     // jobs and results, whatever they are about; strategies stand in for a study on a simulated clock
+    // what a run asked, was answered and found, whoever asks
+    ("journal", "protocol"),
+    ("journal", "support"),
+    ("coordinator", "journal"),
+    ("dispatch", "journal"),
     ("dispatch", "link"),
     ("dispatch", "protocol"),
     ("dispatch", "search"),
@@ -74,7 +79,7 @@ const ARROWS: &[(&str, &str)] = &[
     ("oscillator", "worker"),
     ("oscillator", "case"),
     ("oscillator", "coordinator"),
-    ("oscillator", "dispatch"),
+    ("oscillator", "journal"),
     ("oscillator", "discrepancy"),
     // decisions of a diagnosis on linearised cases
     ("rejudge", "case"),

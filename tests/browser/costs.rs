@@ -4,11 +4,9 @@ use super::{
     driver::{Browser, LIMIT},
     folder::oscillator_site,
 };
-use dispatch::journal::{self, Journal};
-use protocol::{
-    event::{Account, Event, Spent, WorkerAccount},
-    id::WorkerId,
-};
+use journal::Journal;
+use journal::event::{Account, Event, Spent, WorkerAccount};
+use protocol::id::WorkerId;
 use rustix::process::{Pid, Signal};
 use std::{
     fs,

@@ -1,6 +1,7 @@
 //! Checks that derivatives computed by several processes are bit-identical to those from one.
 use super::{LIMIT, collect};
 use dispatch::runtime::{Dispatch, DispatchOptions};
+use journal::event::JobReason;
 use protocol::{
     case::Case,
     id::{ContentHash, JobId},
@@ -72,7 +73,7 @@ async fn outcomes(case: &Case, workers: usize) -> BTreeMap<JobId, Outcome> {
     let jobs = jobs(case);
     let count = jobs.len();
     for (id, job) in (0..).zip(jobs) {
-        run.submit(JobId(id), job).unwrap();
+        run.submit(JobId(id), job, JobReason::default()).unwrap();
     }
     let outcomes = collect(&mut run, count, LIMIT).await.unwrap();
     run.close().await.unwrap();
@@ -90,7 +91,8 @@ async fn what_is_computed_ahead_has_the_same_bits() {
         .await
         .unwrap();
     let jobs = jobs(&case);
-    run.submit(JobId(0), jobs[0].clone()).unwrap();
+    run.submit(JobId(0), jobs[0].clone(), JobReason::default())
+        .unwrap();
     let mut outcomes = collect(&mut run, 1, LIMIT).await.unwrap();
     run.anticipate(jobs[1..4].to_vec()).unwrap();
     let wait_until_idle = async |run: &Dispatch| {
@@ -109,14 +111,16 @@ async fn what_is_computed_ahead_has_the_same_bits() {
     };
     let ahead = wait_until_idle(&run).await;
     // the first of them was divided for three idle slots: one job of two parts
-    run.submit(JobId(1), jobs[1].clone()).unwrap();
+    run.submit(JobId(1), jobs[1].clone(), JobReason::default())
+        .unwrap();
     outcomes.extend(collect(&mut run, 1, LIMIT).await.unwrap());
     tokio::time::sleep(Duration::from_millis(50)).await;
     let claimed = run.snapshot().spent;
     assert!(claimed.speculative_us < ahead.speculative_us, "{claimed:?}");
     assert!(claimed.useful_us > ahead.useful_us, "{claimed:?}");
     for (id, job) in (2..).zip(&jobs[2..]) {
-        run.submit(JobId(id), job.clone()).unwrap();
+        run.submit(JobId(id), job.clone(), JobReason::default())
+            .unwrap();
     }
     run.anticipate(vec![jobs[0].clone()]).unwrap();
     outcomes.extend(collect(&mut run, 6, LIMIT).await.unwrap());

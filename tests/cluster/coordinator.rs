@@ -3,6 +3,7 @@
 //! `test-coordinator RUN_DIR LOCATOR JOBS DELAY_MS LOCAL_WORKERS` does a number of jobs; each line is `id
 //! replayed`. With `search:SEED` for JOBS it runs a search and leaves its log in `RUN_DIR/log`.
 use dispatch::runtime::Dispatch;
+use journal::event::JobReason;
 use protocol::id::JobId;
 use std::{
     env,
@@ -48,7 +49,7 @@ async fn run() -> Result<(), Box<dyn Error>> {
         let mut search = SearchRun::new(seed.parse()?, delay_ms);
         while search.strategy.finished().is_none() {
             for (id, job) in search.ask() {
-                dispatch.submit(JobId(id), job)?;
+                dispatch.submit(JobId(id), job, JobReason::default())?;
             }
             let completed = dispatch.next().await?;
             search.tell(completed.id.0, &completed.outcome);
@@ -58,7 +59,7 @@ async fn run() -> Result<(), Box<dyn Error>> {
     } else {
         let jobs: u64 = jobs.parse()?;
         for n in 0..jobs {
-            dispatch.submit(JobId(n), tests::job(n, delay_ms))?;
+            dispatch.submit(JobId(n), tests::job(n, delay_ms), JobReason::default())?;
         }
         for _ in 0..jobs {
             let completed = match dispatch.next().await {

@@ -2,9 +2,9 @@
 //! command.
 //!
 //! `HORSEHEAD_TEST_KILLS` sets the number of kills (default 30).
-use dispatch::journal;
 use dispatch::runtime::Dispatch;
-use protocol::{event::Event, id::draw};
+use journal::event::Event;
+use protocol::id::draw;
 use rustix::process::Signal;
 use std::{
     collections::{BTreeMap, BTreeSet},

@@ -4,8 +4,7 @@
 //! machine does not allow that, the test reports it and is skipped; the journal writer's own tests inject the
 //! same failures.
 use super::LIMIT;
-use dispatch::journal;
-use protocol::event::Event;
+use journal::event::Event;
 use std::{
     fs,
     io::{BufRead, BufReader, Read, Write},

@@ -1,6 +1,7 @@
 //! Tests with workers that are killed, frozen or asked to end.
 use super::{LIMIT, collect, submit};
 use dispatch::runtime::{BenchPlan, BenchWorkers, Dispatch, bench};
+use journal::event::JobReason;
 use protocol::{id::JobId, job::Job};
 use rustix::process::Signal;
 use std::time::{Duration, Instant};
@@ -141,7 +142,9 @@ async fn a_frozen_worker_does_not_hold_up_the_others() {
     let mut done = 0;
     while frozen_at.is_none_or(|at: Instant| at.elapsed() < Duration::from_secs(6)) {
         while next < done + 40 {
-            dispatch.submit(JobId(next), order(next)).unwrap();
+            dispatch
+                .submit(JobId(next), order(next), JobReason::default())
+                .unwrap();
             next += 1;
         }
         tokio::time::timeout(LIMIT, dispatch.next())

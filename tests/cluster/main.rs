@@ -19,6 +19,7 @@ mod slots;
 mod wall_clock;
 
 use dispatch::runtime::{Dispatch, DispatchError};
+use journal::event::JobReason;
 use protocol::{id::JobId, job::Outcome};
 use std::{collections::BTreeMap, time::Duration};
 
@@ -55,6 +56,8 @@ async fn collect(
 
 fn submit(dispatch: &mut Dispatch, jobs: u64, delay_ms: u32) {
     for n in 0..jobs {
-        dispatch.submit(JobId(n), tests::job(n, delay_ms)).unwrap();
+        dispatch
+            .submit(JobId(n), tests::job(n, delay_ms), JobReason::default())
+            .unwrap();
     }
 }

@@ -5,6 +5,7 @@ use dispatch::{
     runtime::{Completed, Dispatch, DispatchError, RunSummary},
     scheduler::StopReason,
 };
+use journal::event::JobReason;
 use protocol::{
     id::{AttemptId, JobId},
     job::{Answer, Failure, Outcome},
@@ -45,7 +46,9 @@ async fn outcomes(
         .map(|_| Process::worker_with(&locator, &arguments, &environment))
         .collect();
     for n in 0..jobs {
-        dispatch.submit(JobId(n), job(n, 5)).unwrap();
+        dispatch
+            .submit(JobId(n), job(n, 5), JobReason::default())
+            .unwrap();
     }
     let results = collect(&mut dispatch, usize::try_from(jobs).unwrap(), LIMIT)
         .await
@@ -95,7 +98,9 @@ async fn a_job_that_kills_its_workers_is_quarantined_and_computed_when_the_run_i
         let mut dispatch = Dispatch::open(run.clone()).await.unwrap();
         let healthy = is_resumed.then(|| Process::worker_with(&locator, &arguments, &[]));
         for n in 0..30 {
-            dispatch.submit(JobId(n), job(n, 5)).unwrap();
+            dispatch
+                .submit(JobId(n), job(n, 5), JobReason::default())
+                .unwrap();
         }
         let ended = tokio::time::timeout(LIMIT, async {
             while results.len() < 30 {
@@ -216,7 +221,9 @@ async fn if_every_job_crashes_the_run_stops_with_one_message() {
     let environment = [("HORSEHEAD_TEST_MISBEHAVE", behaviour.as_str())];
     let _worker = Process::worker_with(&locator, &["--slots", "4"], &environment);
     for n in 0..40 {
-        dispatch.submit(JobId(n), job(n, 0)).unwrap();
+        dispatch
+            .submit(JobId(n), job(n, 0), JobReason::default())
+            .unwrap();
     }
     let stopped = tokio::time::timeout(LIMIT, async {
         loop {

@@ -1,7 +1,7 @@
 //! Tests with a coordinator that is killed and restarted with the same command.
 use super::LIMIT;
-use dispatch::journal;
-use protocol::{event::Event, id::JobId, job::Outcome};
+use journal::event::Event;
+use protocol::{id::JobId, job::Outcome};
 use rustix::process::Signal;
 use std::{
     collections::BTreeMap,

@@ -5,6 +5,7 @@
 //! ```
 use super::LIMIT;
 use dispatch::runtime::Dispatch;
+use journal::event::JobReason;
 use protocol::{
     id::JobId,
     job::{Answer, Job, Outcome},
@@ -46,7 +47,9 @@ impl Load {
                 reply_bytes: 10_000,
                 delay_ms: self.delay_ms,
             };
-            self.dispatch.submit(JobId(n), job).unwrap();
+            self.dispatch
+                .submit(JobId(n), job, JobReason::default())
+                .unwrap();
         }
         self.asked = self.asked.max(until);
     }

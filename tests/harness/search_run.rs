@@ -1,6 +1,7 @@
 //! A search on a mathematical test function, for tests that kill and resume runs. The fitness is the length
 //! of a worker's reply, so that it truly depends on the workers, and the log can be compared bit by bit.
 use dispatch::runtime::Dispatch;
+use journal::event::JobReason;
 use protocol::{
     id::JobId,
     job::{Answer, Job, Outcome},
@@ -65,7 +66,9 @@ impl SearchRun {
         let mut results = 0;
         while self.strategy.finished().is_none() {
             for (id, job) in self.ask() {
-                dispatch.submit(JobId(id), job).expect("an open run");
+                dispatch
+                    .submit(JobId(id), job, JobReason::default())
+                    .expect("an open run");
             }
             let completed = tokio::time::timeout(PATIENCE, dispatch.next()).await;
             let completed = completed.expect("a result in time").expect("an open run");

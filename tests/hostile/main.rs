@@ -13,6 +13,7 @@ mod idle;
 mod words;
 
 use dispatch::runtime::Dispatch;
+use journal::event::JobReason;
 use protocol::{id::JobId, job::Outcome};
 use rustix::process::Pid;
 use std::{
@@ -50,7 +51,11 @@ async fn rate(
     loop {
         while begun.elapsed() < time && submitted < results.len() as u64 + AHEAD {
             dispatch
-                .submit(JobId(submitted), tests::job(submitted, 2))
+                .submit(
+                    JobId(submitted),
+                    tests::job(submitted, 2),
+                    JobReason::default(),
+                )
                 .unwrap();
             submitted += 1;
         }

@@ -2,6 +2,7 @@
 //! forged results.
 use super::{LIMIT, MEASURING, rate};
 use dispatch::runtime::{Dispatch, Snapshot};
+use journal::event::JobReason;
 use protocol::pumping_unit::Machine;
 use protocol::{
     announce::{Announcement, ModelDescriptor},
@@ -338,7 +339,9 @@ async fn forged_and_repeated_results_are_not_believed() {
     let admitted = |message: &ToWorker| matches!(message, ToWorker::Admitted { .. });
     let run = peer.announce_until(&announcement(&digest), admitted);
     for n in 0..200 {
-        dispatch.submit(JobId(n), tests::job(n, 5)).unwrap();
+        dispatch
+            .submit(JobId(n), tests::job(n, 5), JobReason::default())
+            .unwrap();
     }
     for round in 0..20_u64 {
         for n in 0..200 {

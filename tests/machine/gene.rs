@@ -5,6 +5,7 @@
     reason = "whatever else comes back is a failed test"
 )]
 use super::unit;
+use journal::event::JobReason;
 use protocol::{
     case::{Case, ChannelRecord, EffectSetting, Scale, Unknown},
     id::JobId,
@@ -191,7 +192,7 @@ struct LocalEvaluator {
 }
 
 impl Evaluator for LocalEvaluator {
-    fn submit(&mut self, id: JobId, job: Job) -> Result<(), EvaluatorError> {
+    fn submit(&mut self, id: JobId, job: Job, _reason: JobReason) -> Result<(), EvaluatorError> {
         self.waiting.push_back((id, job));
         Ok(())
     }

@@ -5,6 +5,7 @@
 //! repeated N duplicates N`, the last one begins with `end`. Exits with an error if a job has an unexpected
 //! result.
 use dispatch::runtime::{Dispatch, DispatchOptions, Snapshot};
+use journal::event::JobReason;
 use protocol::id::JobId;
 use std::{
     collections::BTreeMap,
@@ -33,7 +34,7 @@ async fn main() -> Result<(), Box<dyn Error>> {
     })
     .await?;
     for n in 0..jobs {
-        dispatch.submit(JobId(n), tests::job(n, delay_ms))?;
+        dispatch.submit(JobId(n), tests::job(n, delay_ms), JobReason::default())?;
     }
     let (mut results, mut last) = (BTreeMap::new(), String::new());
     let mut looks = tokio::time::interval(LOOK);

@@ -1,6 +1,7 @@
 //! Test of launching, draining, expelling and stopping workers during a run.
 use super::*;
 use dispatch::runtime::{Dispatch, DispatchOptions};
+use journal::event::JobReason;
 use protocol::id::JobId;
 use std::time::{Duration, Instant};
 
@@ -15,7 +16,8 @@ async fn open(site: &Site, jobs: u64, delay_ms: u32) -> Dispatch {
     };
     let mut run = Dispatch::open(options).await.unwrap();
     for n in 0..jobs {
-        run.submit(JobId(n), tests::job(n, delay_ms)).unwrap();
+        run.submit(JobId(n), tests::job(n, delay_ms), JobReason::default())
+            .unwrap();
     }
     run
 }
@@ -169,7 +171,8 @@ async fn the_workers_of_the_run_itself_end_only_with_all() {
     let mut run = Dispatch::open(tests::options(&site.path("run"), None, 1))
         .await
         .unwrap();
-    run.submit(JobId(0), tests::job(0, 10)).unwrap();
+    run.submit(JobId(0), tests::job(0, 10), JobReason::default())
+        .unwrap();
     run.next().await.unwrap();
     let workers = site.list();
     assert_eq!(

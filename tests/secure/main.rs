@@ -8,6 +8,7 @@ mod admission;
 mod stranger;
 
 use dispatch::runtime::{Dispatch, DispatchOptions};
+use journal::event::JobReason;
 use protocol::{id::JobId, job::Outcome};
 use std::{
     collections::BTreeMap,
@@ -44,7 +45,9 @@ fn worker(locator: &str, tls: Option<PathBuf>, arguments: &[&str]) -> Command {
 /// Submits jobs to a coordinator and waits for the results of all.
 async fn compute(dispatch: &mut Dispatch, jobs: u64, delay_ms: u32) -> BTreeMap<JobId, Outcome> {
     for n in 0..jobs {
-        dispatch.submit(JobId(n), tests::job(n, delay_ms)).unwrap();
+        dispatch
+            .submit(JobId(n), tests::job(n, delay_ms), JobReason::default())
+            .unwrap();
     }
     let mut results = BTreeMap::new();
     let all = async {

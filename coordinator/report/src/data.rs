@@ -3,9 +3,9 @@
 //! Every name of a quantity states its unit. Independent of files, clocks and workers.
 use discrepancy::identify::{Determination, UnknownEstimate};
 use discrepancy::validation::gap::Gap;
-use dispatch::account::{JobCost, Presence};
+use journal::account::{JobCost, Presence};
+use journal::event::Spent;
 use protocol::case::{Case, Channel, ChannelRecord, WeightedCondition};
-use protocol::event::Spent;
 use protocol::job::{Curves, Evaluation, Verdict};
 
 /// One parameter set of a calibration.

@@ -1,11 +1,12 @@
 //! Reduction of the back head to its modes, done by a worker as a job.
+use journal::event::JobReason;
 use protocol::{
     id::JobId,
     job::{Answer, Job},
     pumping_unit::{REDUCE_HEAD, ReduceHeadSpec, ReducedHead},
     wire::{self, WireError},
 };
-use study::{self, Evaluator, Stop, StudyError, or_stop};
+use study::{self, Evaluator, Stop, StudyError, run_batch};
 
 /// Submits the reduction of a head as a job and returns its result.
 ///
@@ -24,9 +25,19 @@ pub async fn reduce_head(
         name: REDUCE_HEAD.to_owned(),
         body: wire::encode(spec).map_err(damaged)?,
     };
-    evaluator.submit(JobId(0), job)?;
-    let completed = or_stop(evaluator.next(), stop).await??;
-    let what = || "the reduction of the back head".to_owned();
-    let answer = study::answer(completed, Answer::into_own, what)?;
-    wire::decode(&answer).map_err(damaged)
+    let reason = JobReason::outside_search("reduction");
+    let mut reduced = Vec::new();
+    run_batch(
+        evaluator,
+        vec![(JobId(0), job)],
+        &reason,
+        stop,
+        |_, _, completed| {
+            let what = || "the reduction of the back head".to_owned();
+            reduced = study::answer(completed, Answer::into_own, what)?;
+            Ok(())
+        },
+    )
+    .await?;
+    wire::decode(&reduced).map_err(damaged)
 }

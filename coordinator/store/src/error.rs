@@ -1,5 +1,5 @@
 //! Error type of the export of a run.
-use dispatch::journal::JournalError;
+use journal::JournalError;
 use std::{
     io,
     path::{Path, PathBuf},

@@ -1,5 +1,4 @@
-//! Export in progress: converts the journal's events, and the simulations requested by the study, into table
-//! rows.
+//! Export in progress: converts the journal's events into table rows.
 use super::{
     error::StoreError,
     row::{Brief, EffectRow, Evaluated, Fact, Happened, Scored},
@@ -7,25 +6,24 @@ use super::{
     target::{Draft, Target},
     writer::TableWriter,
 };
-use dispatch::account::AccountBuilder;
-use dispatch::journal::{Damage, JournalEntry, JournalSnapshot};
-use protocol::{
-    case::Case,
-    event::{Event, Finished},
-    job::{Individual, Job},
-};
+use journal::account::AccountBuilder;
+use journal::event::{Asked, Event, Finished};
+use journal::{Damage, JournalEntry, fold};
+use protocol::{case::Case, id::JobId, job::Individual};
 use std::{
-    collections::BTreeMap,
+    collections::{BTreeMap, BTreeSet},
     path::{Path, PathBuf},
 };
 
-/// Label of an exported simulation: the reason for which the study requested it.
+/// What a journal holds, as far as an export concerns it.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ColumnLabel {
-    /// Generation of the search in which the individual was proposed; none outside a search.
-    pub generation: Option<u32>,
-    /// Purpose of the simulation, as text.
-    pub purpose: String,
+pub struct Contents {
+    /// Stretches of the journal that cannot be read.
+    pub damage: Vec<Damage>,
+    /// Number of requested jobs that have no result.
+    pub unanswered: usize,
+    /// Number of results whose request cannot be read, so that their simulations are unknown.
+    pub unknown: usize,
 }
 
 /// Result of a completed export.
@@ -37,12 +35,18 @@ pub struct Exported {
     pub rows: BTreeMap<&'static str, u64>,
 }
 
-/// Export in progress: receives a run's journal and evaluations, and writes them as table rows.
+/// Export in progress: receives a run's journal, and writes it as table rows.
 pub struct Store<'a> {
     case: &'a Case,
     draft: Draft,
     book: TableWriter,
     tables: Tables,
+    /// Requests without a result so far.
+    asked: BTreeMap<JobId, Asked>,
+    /// Jobs with a result, of which the first counts.
+    finished: BTreeSet<JobId>,
+    /// Number of results whose request cannot be read.
+    unknown: usize,
 }
 
 impl<'a> Store<'a> {
@@ -63,6 +67,9 @@ impl<'a> Store<'a> {
             draft,
             book,
             tables,
+            asked: BTreeMap::new(),
+            finished: BTreeSet::new(),
+            unknown: 0,
         })
     }
 
@@ -78,16 +85,15 @@ impl<'a> Store<'a> {
         self.book.add_row(&self.tables.run, &fact)
     }
 
-    /// Reads the run's journal, exports all rows that follow from it alone, and returns its job results as a
-    /// recording, from which the study can be repeated.
+    /// Reads the run's journal, exports its rows, and returns what it holds.
     ///
     /// # Errors
     /// [`StoreError::Journal`] if the journal cannot be read, other errors if a table cannot be written.
-    pub fn journal(&mut self, path: &Path) -> Result<JournalSnapshot, StoreError> {
+    pub fn journal(&mut self, path: &Path) -> Result<Contents, StoreError> {
         let mut folding = AccountBuilder::default();
         let mut process = None;
         let mut failed = None;
-        let recording = JournalSnapshot::read(path, |entry, event| {
+        let report = fold(path, |entry, event| {
             folding.apply(&event);
             if let Event::Opened { epoch, .. } = event {
                 process = Some(epoch);
@@ -99,7 +105,7 @@ impl<'a> Store<'a> {
         if let Some(error) = failed {
             return Err(error);
         }
-        let account = folding.finish(recording.report().damage.clone());
+        let account = folding.finish(report.damage.clone());
         for worker in &account.workers {
             self.book.add_row(&self.tables.workers, worker)?;
         }
@@ -107,13 +113,17 @@ impl<'a> Store<'a> {
             self.book.add_row::<Damage>(&self.tables.damage, damage)?;
         }
         self.fact("processes", &account.processes.to_string())?;
-        self.fact("results", &recording.len().to_string())?;
+        self.fact("results", &self.finished.len().to_string())?;
         self.fact("failed_attempts", &account.failed.to_string())?;
         self.fact("accounted_wall_s", &account.wall_s.to_string())?;
         let lost: u64 = account.damage.iter().map(|damage| damage.bytes).sum();
-        self.fact("journal_records", &recording.report().records.to_string())?;
+        self.fact("journal_records", &report.records.to_string())?;
         self.fact("journal_bytes_lost", &lost.to_string())?;
-        Ok(recording)
+        Ok(Contents {
+            damage: report.damage,
+            unanswered: self.asked.len(),
+            unknown: self.unknown,
+        })
     }
 
     fn event(
@@ -129,8 +139,14 @@ impl<'a> Store<'a> {
         };
         let happened = match event {
             Event::Finished(finished) => return self.result(&finished),
-            // repeated at each opening, and told by the account
-            Event::Begun { .. } | Event::Asked { .. } | Event::Accounted(_) => return Ok(()),
+            Event::Asked(asked) => {
+                if !self.finished.contains(&asked.job) {
+                    self.asked.insert(asked.job, *asked);
+                }
+                return Ok(());
+            }
+            // repeated at each opening, told by the account, or found by the study alone
+            Event::Begun { .. } | Event::Accounted(_) | Event::Found { .. } => return Ok(()),
             Event::Opened { at_unix_ms, .. } => Happened {
                 event: "opened",
                 at_unix_ms: Some(at_unix_ms),
@@ -177,49 +193,51 @@ impl<'a> Store<'a> {
             };
             self.book.add_row(&self.tables.scores, &scored)?;
         }
-        self.book.add_row(&self.tables.results, &brief)
+        self.book.add_row(&self.tables.results, &brief)?;
+        if !self.finished.insert(brief.job) {
+            return Ok(());
+        }
+        if let Some(asked) = self.asked.remove(&brief.job) {
+            return self.evaluation(asked, brief);
+        }
+        self.unknown += 1;
+        Ok(())
     }
 
-    /// Adds a job that the study requested, with its result; a job that simulates nothing is ignored.
-    ///
-    /// # Errors
-    /// [`StoreError::Io`] or [`StoreError::Table`] if it cannot be written.
-    pub fn evaluation(
-        &mut self,
-        label: ColumnLabel,
-        job: &Job,
-        finished: &Finished,
-    ) -> Result<(), StoreError> {
+    /// Adds a requested job with its result; a job that simulates nothing is left out.
+    fn evaluation(&mut self, asked: Asked, result: Brief) -> Result<(), StoreError> {
         let Some(Individual {
             condition,
             genes,
             effects,
-        }) = job.individual()
+        }) = asked.individual
         else {
             return Ok(());
         };
+        let count = effects.len();
         for effect in effects {
-            let mut parameters = effect.parameters.iter().cloned().map(Some).collect();
-            if effect.parameters.is_empty() {
+            let mut parameters: Vec<_> = effect.parameters.into_iter().map(Some).collect();
+            if parameters.is_empty() {
                 parameters = vec![None];
             }
             for parameter in parameters {
                 let added = EffectRow {
-                    job: finished.job(),
+                    job: result.job,
                     effect: effect.id.clone(),
                     parameter,
                 };
                 self.book.add_row(&self.tables.effects, &added)?;
             }
         }
-        let condition = self.case.conditions.get(*condition);
+        let condition = self.case.conditions.get(condition);
         let evaluated = Evaluated {
-            generation: label.generation,
-            purpose: label.purpose,
+            generation: asked.reason.generation,
+            purpose: asked.reason.purpose,
             condition: condition.map_or_else(String::new, |one| one.name.clone()),
-            genes: genes.clone(),
-            effects: effects.len(),
-            result: Brief::of(finished),
+            genes,
+            effects: count,
+            columns: asked.columns,
+            result,
         };
         self.book.add_row(&self.tables.evaluations, &evaluated)
     }

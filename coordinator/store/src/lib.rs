@@ -1,8 +1,6 @@
 //! Export of a run as tables for queries, built from its journal: SQLite, CSV or Parquet.
 //!
-//! [`Store`] converts the journal into rows. A journal does not contain the purpose of the simulations that
-//! were *asked* for; the caller therefore repeats the run's study on the recording ([`study::ReplayEvaluator`]) and
-//! passes in the simulations one by one. Rows are streamed: neither curves nor residuals nor tables are held
+//! [`Store`] converts the journal into rows. Rows are streamed: neither curves nor residuals nor tables are held
 //! in memory. The journal is authoritative and never changed; an export can be repeated at any time with
 //! identical content.
 mod column;
@@ -21,7 +19,7 @@ mod tests;
 mod writer;
 
 pub use error::StoreError;
-pub use export::{ColumnLabel, Exported, Store};
+pub use export::{Contents, Exported, Store};
 pub use table::gene_column;
 pub use target::{Format, Target};
 

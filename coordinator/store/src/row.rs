@@ -1,7 +1,6 @@
 //! Row types of the exported tables.
-use dispatch::scheduler;
+use journal::event::Finished;
 use protocol::{
-    event::Finished,
     id::{JobId, WorkerId},
     job::{Answer, ChannelScore, Counters, Failure, Outcome, Verdict},
     message::Cost,
@@ -33,7 +32,7 @@ impl Brief {
         Self {
             job: finished.job(),
             kind: finished.outcome.kind(),
-            offered: scheduler::epoch_and_number(finished.attempt.attempt),
+            offered: finished.attempt.attempt.epoch_and_number(),
             worker: finished.worker,
             cost: finished.cost,
             simulated: finished.outcome.simulation(),
@@ -63,6 +62,8 @@ pub(super) struct Evaluated {
     pub(super) genes: Vec<f64>,
     /// Number of effects that the simulation added to those of the case.
     pub(super) effects: usize,
+    /// Number of parameters by which the simulation was differentiated.
+    pub(super) columns: u32,
     pub(super) result: Brief,
 }
 

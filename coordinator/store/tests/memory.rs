@@ -4,9 +4,9 @@
     reason = "helpers of a test: what cannot be written or read has failed"
 )]
 use case::{Overrides, load};
-use dispatch::journal::{self, Journal};
+use journal::Journal;
+use journal::event::{Asked, Event, Finished, JobReason, RunHeader};
 use protocol::{
-    event::{Event, Finished, RunHeader},
     id::{AttemptId, ContentHash, JobId, RunId, WorkerId},
     job::{
         Answer, ChannelScore, Counters, Evaluation, Individual, Job, Outcome, Reply, SimulateSpec,
@@ -15,7 +15,7 @@ use protocol::{
     message::{Attempt, Cost},
 };
 use std::{env, fs, path::Path, process::Command};
-use store::{ColumnLabel, Format, Store, Target};
+use store::{Format, Store, Target};
 
 /// Length of the residual vector of each generated test result, a tenth of the length in real runs.
 const RESIDUALS: usize = 144;
@@ -36,7 +36,7 @@ fn finished(job: u64) -> Finished {
     Finished {
         attempt: Attempt {
             job: JobId(job),
-            attempt: AttemptId(1 << 16),
+            attempt: AttemptId::new(1, 0),
         },
         work: ContentHash::of(&job.to_le_bytes()),
         worker: Some(WorkerId(job % 64)),
@@ -83,21 +83,7 @@ fn fifty_thousand_evaluations_need_the_memory_of_five_thousand() {
                 force: false,
             };
             let mut store = Store::begin(target, &case).unwrap();
-            let recording = store.journal(&run.join(journal::FILE)).unwrap();
-            for job in 0..count {
-                let finished = recording.recall(JobId(job)).unwrap().unwrap();
-                let individual = Individual::new(0, case.start());
-                let reply = Reply::Score {
-                    with_residual: true,
-                    whole: true,
-                };
-                let label = ColumnLabel {
-                    generation: Some(0),
-                    purpose: "initial".to_owned(),
-                };
-                let job = Job::Simulate(SimulateSpec::new(individual, reply));
-                store.evaluation(label, &job, &finished).unwrap();
-            }
+            store.journal(&run.join(journal::FILE)).unwrap();
             let rows = store.finish().unwrap().rows;
             assert_eq!((rows["evaluations"], rows["scores"]), (count, 4 * count));
             peaks.push(peak_mib());
@@ -139,7 +125,19 @@ fn write(folder: &Path, count: u64) {
         settings: String::new(),
     };
     let (mut journal, _) = Journal::open(folder, &header, RunId(1), 0, |_| {}).unwrap();
+    let individual = Individual::new(0, vec![1.0; 10]);
+    let reply = Reply::Score {
+        with_residual: true,
+        whole: true,
+    };
+    let simulated = Job::Simulate(SimulateSpec::new(individual, reply));
+    let reason = JobReason {
+        purpose: "initial".to_owned(),
+        generation: Some(0),
+    };
     for job in 0..count {
+        let asked = Asked::new(JobId(job), &simulated, reason.clone());
+        journal.append(Event::Asked(Box::new(asked))).unwrap();
         journal
             .append(Event::Finished(Box::new(finished(job))))
             .unwrap();

@@ -1,17 +1,46 @@
-//! Scoring of a list of individuals; results in the order of the list.
+//! Jobs submitted together, and the scoring of a list of individuals.
 use super::{
-    evaluate::{EvaluationRequest, Scored, job, scored},
+    error::StudyError,
+    evaluate::{EVALUATION, EvaluationRequest, Scored, job, scored},
     evaluator::Evaluator,
     progress::ProgressView,
     stop::{Stop, or_stop},
     watch::Watch,
 };
+use dispatch::scheduler::Completed;
+use journal::event::JobReason;
 use protocol::{
     case::Case,
     id::JobId,
-    job::{Evaluation, Verdict},
+    job::{Evaluation, Job, Verdict},
 };
 use std::collections::BTreeMap;
+
+/// Submits jobs for a reason; `take` receives the place in the list and the result of each, in the order of arrival.
+///
+/// # Errors
+/// If no evaluator is left, the user stops, or `take` fails.
+pub async fn run_batch<E: Evaluator>(
+    evaluator: &mut E,
+    jobs: Vec<(JobId, Job)>,
+    reason: &JobReason,
+    stop: &mut Stop,
+    mut take: impl FnMut(&E, usize, Completed) -> Result<(), StudyError>,
+) -> Result<(), StudyError> {
+    let mut open: BTreeMap<JobId, usize> = BTreeMap::new();
+    for (place, (id, job)) in jobs.into_iter().enumerate() {
+        evaluator.submit(id, job, reason.clone())?;
+        open.insert(id, place);
+    }
+    while !open.is_empty() {
+        let completed = or_stop(evaluator.next(), stop).await??;
+        // others may be results of jobs that an earlier study no longer waits for
+        if let Some(place) = open.remove(&completed.id) {
+            take(evaluator, place, completed)?;
+        }
+    }
+    Ok(())
+}
 
 /// Scores individuals, each with one value for each unknown of the case \[declared units\]; equal individuals
 /// are computed once.
@@ -26,7 +55,9 @@ pub async fn score_all<E: Evaluator>(
     watch: &mut dyn Watch<ProgressView>,
     stop: &mut Stop,
 ) -> anyhow::Result<Vec<Scored>> {
-    let mut open: BTreeMap<JobId, Vec<usize>> = BTreeMap::new();
+    // those of each job, with equal individuals together
+    let mut wanted: Vec<((JobId, Job), Vec<usize>)> = Vec::new();
+    let mut places: BTreeMap<JobId, usize> = BTreeMap::new();
     let mut numbers = evaluator.numbers()?;
     for (index, genes) in individuals.iter().enumerate() {
         let request = EvaluationRequest {
@@ -36,30 +67,37 @@ pub async fn score_all<E: Evaluator>(
         };
         let job = job(case, &request);
         let id = numbers.number(&job);
-        if let Some(same) = open.get_mut(&id) {
+        if let Some((_, same)) = places.get(&id).and_then(|place| wanted.get_mut(*place)) {
             same.push(index);
         } else {
-            evaluator.submit(id, job)?;
-            open.insert(id, vec![index]);
+            places.insert(id, wanted.len());
+            wanted.push(((id, job), vec![index]));
         }
     }
+    let (jobs, indices): (Vec<(JobId, Job)>, Vec<Vec<usize>>) = wanted.into_iter().unzip();
     let mut view = ProgressView {
         generations: 1,
-        expected: open.len() as u64,
+        expected: jobs.len() as u64,
         ..ProgressView::default()
     };
-    let mut found: BTreeMap<usize, Scored> = BTreeMap::new();
-    while !open.is_empty() {
-        watch.progress(&view, &|| evaluator.workers_status());
-        let completed = or_stop(evaluator.next(), stop).await??;
-        let Some(indices) = open.remove(&completed.id) else {
-            continue;
-        };
-        let scored = scored(completed.id, completed.outcome)?;
-        view.add(complete(&scored), completed.replayed);
-        found.extend(indices.into_iter().map(|index| (index, scored.clone())));
-    }
     watch.progress(&view, &|| evaluator.workers_status());
+    let reason = JobReason::outside_search(EVALUATION);
+    let mut found: BTreeMap<usize, Scored> = BTreeMap::new();
+    run_batch(
+        evaluator,
+        jobs,
+        &reason,
+        stop,
+        |evaluator, place, completed| {
+            let scored = scored(completed.id, completed.outcome)?;
+            view.add(complete(&scored), completed.replayed);
+            watch.progress(&view, &|| evaluator.workers_status());
+            let own = indices.get(place).into_iter().flatten();
+            found.extend(own.map(|index| (*index, scored.clone())));
+            Ok(())
+        },
+    )
+    .await?;
     Ok(found.into_values().collect())
 }
 

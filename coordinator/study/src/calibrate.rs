@@ -8,6 +8,7 @@ use super::{
     stop::{Stop, or_stop},
     watch::Watch,
 };
+use journal::event::JobReason;
 use protocol::{
     case::Case,
     id::JobId,
@@ -51,8 +52,8 @@ pub async fn calibrate<E: Evaluator>(
     let mut view = ProgressView::default();
     loop {
         for proposal in strategy.ask() {
-            watch.asked(proposal.id, &proposal);
-            evaluator.submit(JobId(proposal.id), score(case, &proposal))?;
+            let job = score(case, &proposal);
+            evaluator.submit(JobId(proposal.id), job, reason(&proposal))?;
             open.insert(proposal.id, proposal);
         }
         if evaluator.computes_ahead() {
@@ -85,6 +86,14 @@ pub async fn calibrate<E: Evaluator>(
         watch.entered(&entry);
         log.insert(entry);
         check_beginning(&log, &open)?;
+    }
+}
+
+/// Returns the reason for which a proposal is simulated.
+pub(super) fn reason(proposal: &Proposal) -> JobReason {
+    JobReason {
+        purpose: proposal.purpose.as_str().to_owned(),
+        generation: Some(proposal.generation),
     }
 }
 

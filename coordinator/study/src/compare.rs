@@ -1,10 +1,9 @@
 //! Scores and curves of selected individuals under selected conditions.
 use super::{
-    error::StudyError,
-    evaluator::Evaluator,
-    job_number::of_comparison,
-    stop::{Stop, or_stop},
+    batch::run_batch, error::StudyError, evaluator::Evaluator, job_number::of_comparison,
+    stop::Stop,
 };
+use journal::event::JobReason;
 use protocol::{
     case::Case,
     id::JobId,
@@ -27,6 +26,9 @@ pub struct CompareRequest {
     /// Unknowns and effect parameters by which the curves are differentiated.
     pub columns: Vec<Column>,
 }
+
+/// Purpose of jobs that compare selected individuals.
+const COMPARISON: &str = "comparison";
 
 /// Number of motion snapshots per simulation that suffices for a smooth animation.
 pub const PICTURES: u32 = 120;
@@ -71,7 +73,7 @@ pub async fn compare<E: Evaluator>(
     wanted: &[CompareRequest],
     stop: &mut Stop,
 ) -> Result<Vec<Compared>, StudyError> {
-    let mut open: BTreeMap<u64, (usize, usize)> = BTreeMap::new();
+    let (mut jobs, mut places) = (Vec::new(), Vec::new());
     for (group, one) in wanted.iter().enumerate() {
         let recorded = case.is_measured(one.condition);
         for (position, (_, genes)) in one.individuals.iter().enumerate() {
@@ -83,8 +85,8 @@ pub async fn compare<E: Evaluator>(
                     whole: false,
                 };
                 let spec = SimulateSpec::new(individual, reply);
-                evaluator.submit(JobId(first), Job::Simulate(spec))?;
-                open.insert(first, (group, position));
+                jobs.push((JobId(first), Job::Simulate(spec)));
+                places.push((group, position));
             }
             let reply = Reply::Curves {
                 pictures: one.frames,
@@ -94,16 +96,14 @@ pub async fn compare<E: Evaluator>(
                 columns: one.columns.clone(),
                 ..SimulateSpec::new(individual, reply)
             };
-            evaluator.submit(JobId(first + 1), Job::Simulate(spec))?;
-            open.insert(first + 1, (group, position));
+            jobs.push((JobId(first + 1), Job::Simulate(spec)));
+            places.push((group, position));
         }
     }
     let mut pairs: BTreeMap<(usize, usize), Pair> = BTreeMap::new();
-    while !open.is_empty() {
-        let completed = or_stop(evaluator.next(), stop).await??;
-        let Some(place) = open.remove(&completed.id.0) else {
-            continue;
-        };
+    let reason = JobReason::outside_search(COMPARISON);
+    run_batch(evaluator, jobs, &reason, stop, |_, number, completed| {
+        let place = places.get(number).copied().unwrap_or_default();
         let pair = pairs.entry(place).or_default();
         let id = completed.id;
         let answer = completed.outcome.done();
@@ -115,7 +115,9 @@ pub async fn compare<E: Evaluator>(
         } else {
             pair.drawn = Some(*answer.into_curves().map_err(wrong)?);
         }
-    }
+        Ok(())
+    })
+    .await?;
     let groups = wanted.iter().enumerate();
     groups
         .map(|(group, one)| collect(one, group, &mut pairs))

@@ -8,6 +8,7 @@ use super::{
     evaluator::Evaluator,
     stop::{Stop, or_stop},
 };
+use journal::event::JobReason;
 use protocol::{
     case::Case,
     id::JobId,
@@ -15,6 +16,9 @@ use protocol::{
 };
 use std::collections::BTreeMap;
 use tokio::sync::mpsc;
+
+/// Purpose of jobs that another program, or a table, requested.
+pub(super) const EVALUATION: &str = "evaluation";
 
 /// Request to score an individual.
 #[derive(Clone, Debug, PartialEq)]
@@ -65,7 +69,7 @@ pub async fn evaluate<E: Evaluator, T>(
                 } else if let Some(tags) = open.get_mut(&id) {
                     tags.push(request.tag);
                 } else {
-                    evaluator.submit(id, job)?;
+                    evaluator.submit(id, job, JobReason::outside_search(EVALUATION))?;
                     open.insert(id, vec![request.tag]);
                 }
             }

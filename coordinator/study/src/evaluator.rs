@@ -2,8 +2,8 @@
 use super::error::{EvaluatorError, StudyError};
 use super::job_number::JobNumbers;
 use dispatch::scheduler::Completed;
+use journal::event::{JobReason, Spent};
 use protocol::{
-    event::Spent,
     id::JobId,
     job::{Answer, Job, UnexpectedAnswer},
 };
@@ -11,12 +11,12 @@ use std::time::Duration;
 
 /// Interface to the computing of a study's jobs, which are completed in any order.
 pub trait Evaluator {
-    /// Submits a job under an id chosen by the caller; each id is submitted once. A result known from an
-    /// earlier session is returned again by [`Evaluator::next`].
+    /// Submits a job under an id chosen by the caller; each id is submitted once. The journal states the reason. A
+    /// result known from an earlier session is returned again by [`Evaluator::next`].
     ///
     /// # Errors
     /// If the evaluator can no longer take jobs.
-    fn submit(&mut self, id: JobId, job: Job) -> Result<(), EvaluatorError>;
+    fn submit(&mut self, id: JobId, job: Job, reason: JobReason) -> Result<(), EvaluatorError>;
 
     /// Replaces the jobs that the study will probably submit next, likeliest first; idle slots may compute them
     /// ahead. It has no effect on results. The default does nothing.

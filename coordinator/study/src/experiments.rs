@@ -3,15 +3,17 @@
 //! Experiments are numbered in the order in which they are requested, which depends on results alone; a
 //! resumed run therefore finds all of them in its journal.
 use super::{
+    batch::run_batch,
     error::StudyError,
     evaluator::{Evaluator, answer},
     job_number::LIBRARY,
-    stop::{Stop, or_stop},
+    stop::Stop,
     watch::{View, Watch},
 };
 use discrepancy::baseline::budget::cost;
 use discrepancy::diagnose::Inputs;
 use discrepancy::laboratory::{Finding, Laboratory, Stage};
+use journal::event::JobReason;
 use protocol::{
     announce::EffectDescriptor,
     id::JobId,
@@ -52,7 +54,6 @@ pub struct StageView {
 }
 
 impl View for StageView {
-    type Reason = Stage;
     type Entry = Finding;
 }
 
@@ -64,11 +65,16 @@ pub async fn library<E: Evaluator>(
     evaluator: &mut E,
     stop: &mut Stop,
 ) -> Result<Vec<EffectDescriptor>, StudyError> {
-    evaluator.submit(JobId(LIBRARY), Job::Describe)?;
-    let completed = or_stop(evaluator.next(), stop).await??;
-    answer(completed, Answer::into_described, || {
-        "the list of effects".to_owned()
+    let jobs = vec![(JobId(LIBRARY), Job::Describe)];
+    let reason = JobReason::outside_search("library");
+    let mut effects = Vec::new();
+    run_batch(evaluator, jobs, &reason, stop, |_, _, completed| {
+        let what = || "the list of effects".to_owned();
+        effects = answer(completed, Answer::into_described, what)?;
+        Ok(())
     })
+    .await?;
+    Ok(effects)
 }
 
 /// Runner of a study's experiments (simulations), which it submits to an evaluator as jobs.
@@ -131,60 +137,64 @@ impl<E: Evaluator> Laboratory for Jobs<'_, E> {
         batch: Vec<SimulateSpec>,
     ) -> Result<Vec<Option<Observation>>, StudyError> {
         let started = Instant::now();
-        let first = self.next_id;
         let mut results: Vec<Option<Observation>> = vec![None; batch.len()];
         let mut open = batch.len();
         let prices: Vec<f64> = batch.iter().map(cost).collect();
-        for spec in batch {
-            self.watch.asked(self.next_id, &stage);
-            self.evaluator
-                .submit(JobId(self.next_id), Job::Simulate(spec))?;
-            self.next_id += 1;
-        }
-        while open > 0 {
-            let completed = or_stop(self.evaluator.next(), self.stop).await??;
-            let place = completed
-                .id
-                .0
-                .checked_sub(first)
-                .and_then(|k| usize::try_from(k).ok());
-            let Some(slot) = place.and_then(|k| results.get_mut(k)) else {
-                continue;
-            };
-            let price = place
-                .and_then(|k| prices.get(k))
-                .copied()
-                .unwrap_or_default();
-            self.spent += price;
-            self.left[stage as usize] -= price;
-            let cost = self.costs.entry(stage).or_default();
-            cost.experiments += 1;
-            let id = completed.id;
-            match completed.outcome.done() {
-                Ok(answer) => {
-                    let seen = answer.into_channels();
-                    let seen = seen.map_err(|_| StudyError::WrongKind { id })?;
-                    cost.failed += u64::from(seen.verdict != Verdict::Complete);
-                    *slot = Some(seen);
+        let numbers = (self.next_id..).map(JobId);
+        let jobs = numbers.zip(batch.into_iter().map(Job::Simulate)).collect();
+        self.next_id += results.len() as u64;
+        let reason = JobReason::outside_search(stage.name());
+        let Self {
+            evaluator,
+            watch,
+            stop,
+            stages,
+            costs,
+            spent,
+            left,
+            ..
+        } = self;
+        run_batch(
+            *evaluator,
+            jobs,
+            &reason,
+            stop,
+            |evaluator, place, completed| {
+                let price = prices.get(place).copied().unwrap_or_default();
+                *spent += price;
+                left[stage as usize] -= price;
+                let cost = costs.entry(stage).or_default();
+                cost.experiments += 1;
+                let id = completed.id;
+                match completed.outcome.done() {
+                    Ok(answer) => {
+                        let seen = answer.into_channels();
+                        let seen = seen.map_err(|_| StudyError::WrongKind { id })?;
+                        cost.failed += u64::from(seen.verdict != Verdict::Complete);
+                        if let Some(slot) = results.get_mut(place) {
+                            *slot = Some(seen);
+                        }
+                    }
+                    // a failure that every experiment would meet ends the diagnosis
+                    Err(failure) => match StudyError::from_systematic_failure(&failure) {
+                        Some(error) => return Err(error),
+                        None => cost.failed += 1,
+                    },
                 }
-                // a failure that every experiment would meet ends the diagnosis
-                Err(failure) => match StudyError::from_systematic_failure(&failure) {
-                    Some(error) => return Err(error),
-                    None => cost.failed += 1,
-                },
-            }
-            open -= 1;
-            let evaluator = &*self.evaluator;
-            let view = StageView {
-                stages: self.stages,
-                stage,
-                done: cost.experiments,
-                open,
-                spent: self.spent,
-                left: self.left[stage as usize].max(0.0),
-            };
-            self.watch.progress(&view, &|| evaluator.workers_status());
-        }
+                open -= 1;
+                let view = StageView {
+                    stages,
+                    stage,
+                    done: cost.experiments,
+                    open,
+                    spent: *spent,
+                    left: left[stage as usize].max(0.0),
+                };
+                watch.progress(&view, &|| evaluator.workers_status());
+                Ok(())
+            },
+        )
+        .await?;
         let cost = self.costs.entry(stage).or_default();
         cost.batches += u64::from(!results.is_empty());
         cost.wall += started.elapsed();

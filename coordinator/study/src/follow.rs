@@ -6,13 +6,10 @@ use super::{
     error::EvaluatorError,
     evaluator::{Evaluator, WorkersSnapshot},
 };
-use dispatch::journal::{Damage, Growth, JournalEntry, JournalFollower};
 use dispatch::scheduler::Completed;
-use protocol::{
-    event::{Event, Finished},
-    id::JobId,
-    job::Job,
-};
+use journal::event::{Event, Finished, JobReason};
+use journal::{Damage, Growth, JournalEntry, JournalFollower};
+use protocol::{id::JobId, job::Job};
 use std::{
     collections::{BTreeMap, VecDeque},
     path::Path,
@@ -106,7 +103,7 @@ fn failed(error: &dyn std::fmt::Display) -> EvaluatorError {
 }
 
 impl<O: FollowObserver> Evaluator for FollowingEvaluator<'_, O> {
-    fn submit(&mut self, id: JobId, job: Job) -> Result<(), EvaluatorError> {
+    fn submit(&mut self, id: JobId, job: Job, _reason: JobReason) -> Result<(), EvaluatorError> {
         if self.journal.has_result(id) {
             self.ready.push_back(id);
         }

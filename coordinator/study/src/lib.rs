@@ -28,7 +28,7 @@ mod sweep;
 mod test_evaluator;
 mod watch;
 
-pub use batch::score_all;
+pub use batch::{run_batch, score_all};
 pub use calibrate::{Calibrated, calibrate};
 pub use compare::{CompareRequest, Compared, ComparedCurves, PICTURES, compare};
 pub use diagnose::{DiagnosisResult, diagnose_on};

@@ -5,7 +5,7 @@ use super::{
     log::{EvaluationOutcome, LogEntry},
     watch::View,
 };
-use search::strategy::{Progress, Proposal};
+use search::strategy::Progress;
 use std::time::Duration;
 
 /// Progress of a search for display.
@@ -28,7 +28,6 @@ pub struct ProgressView {
 }
 
 impl View for ProgressView {
-    type Reason = Proposal;
     type Entry = LogEntry;
 }
 

@@ -6,9 +6,10 @@ use super::{
     error::EvaluatorError,
     evaluator::{Evaluator, WorkersSnapshot},
 };
-use dispatch::journal::JournalSnapshot;
 use dispatch::scheduler::Completed;
-use protocol::{event::Finished, id::JobId, job::Job};
+use journal::JournalSnapshot;
+use journal::event::{Finished, JobReason};
+use protocol::{id::JobId, job::Job};
 use std::collections::VecDeque;
 
 /// Callback that receives every replayed job with its recorded result.
@@ -71,7 +72,7 @@ impl<'a> ReplayEvaluator<'a> {
 }
 
 impl Evaluator for ReplayEvaluator<'_> {
-    fn submit(&mut self, id: JobId, job: Job) -> Result<(), EvaluatorError> {
+    fn submit(&mut self, id: JobId, job: Job, _reason: JobReason) -> Result<(), EvaluatorError> {
         self.asked.push_back((id, job));
         Ok(())
     }

@@ -1,5 +1,6 @@
 //! Evaluator for tests that answers from a test function in random order; included by the tests of this crate
 //! and of the program.
+use journal::event::JobReason;
 use protocol::pumping_unit::failure;
 use protocol::{
     case::Case,
@@ -51,7 +52,7 @@ impl TestEvaluator {
 }
 
 impl Evaluator for TestEvaluator {
-    fn submit(&mut self, id: JobId, job: Job) -> Result<(), EvaluatorError> {
+    fn submit(&mut self, id: JobId, job: Job, _reason: JobReason) -> Result<(), EvaluatorError> {
         assert!(
             self.open.iter().all(|(other, _)| *other != id),
             "{id} submitted twice"

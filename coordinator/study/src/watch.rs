@@ -3,8 +3,6 @@ use super::evaluator::WorkersSnapshot;
 
 /// Progress data that a kind of study (search, diagnosis, ..) reports to its observer.
 pub trait View {
-    /// Type of the reason for which the study requests a job, such as a stage.
-    type Reason: ?Sized;
     /// Type of what the study finds on its way, such as the log entry of an individual.
     type Entry: ?Sized;
 }
@@ -17,9 +15,6 @@ pub trait Watch<V: View> {
 
     /// Receives the number of results from an earlier session, before any other call.
     fn resumed(&mut self, _recorded: usize) {}
-
-    /// Receives the number of a job and the reason for it, before the job is submitted.
-    fn asked(&mut self, _id: u64, _reason: &V::Reason) {}
 
     /// Receives what the study has found, such as the log entry of an individual.
     fn entered(&mut self, _entry: &V::Entry) {}

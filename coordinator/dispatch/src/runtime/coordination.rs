@@ -4,8 +4,8 @@
 //! Parts do not leave this module: commands concern the jobs that were submitted.
 use super::divide::{DividedJobs, PartResult, is_divisible, is_not_stored, part_count};
 use crate::scheduler::{Command, Completed, Core, Input, Notice, StopReason, is_part};
+use journal::event::Finished;
 use protocol::{
-    event::{Event, Finished},
     id::JobId,
     job::{Job, Outcome},
 };
@@ -67,14 +67,9 @@ impl Coordination {
                 Job::Simulate(spec) => spec.columns.len(),
                 Job::Own { .. } | Job::Describe | Job::Nothing { .. } => 0,
             };
-            let work = job.work_hash();
             let parts = self
                 .divided
                 .divide(id, job, part_count(columns, count, idle));
-            if parts.len() > 1 {
-                let asked = Event::Asked { job: id, work };
-                self.commands.push(Command::Record(asked));
-            }
             for (id, job) in parts {
                 self.process(Input::Submit { id, job }, now);
             }
@@ -100,9 +95,6 @@ impl Coordination {
         let Some(jobs) = self.divided.claim(id, job) else {
             return false;
         };
-        let work = job.work_hash();
-        let asked = Event::Asked { job: id, work };
-        self.commands.push(Command::Record(asked));
         self.process(Input::Claim { jobs }, now);
         let result = self.divided.join_finished(id);
         self.take_joined(result);
@@ -119,8 +111,6 @@ impl Coordination {
         for command in self.core.handle(input, now) {
             match command {
                 Command::Store(result) if is_part(result.job()) => self.finish_part(*result, now),
-                // the whole job was recorded
-                Command::Record(Event::Asked { job, .. }) if is_part(job) => {}
                 Command::Deliver(part) if is_part(part.id) => self.deliver_part(&part),
                 Command::Notice(notice) => {
                     let notice = self.of_submitted_jobs(notice);

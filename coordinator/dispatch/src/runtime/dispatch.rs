@@ -11,6 +11,7 @@ use super::{
     parts::Parts,
 };
 use crate::scheduler::{Completed, Snapshot};
+use journal::event::JobReason;
 use link::{
     Blob, CoordinatorEnd,
     locator::Locator,
@@ -34,7 +35,7 @@ pub struct Dispatch {
     completed: UnboundedReceiver<Result<Completed, DispatchError>>,
     /// Submitted jobs with derivatives that wait for the next call of [`Self::next`], when all jobs that can be
     /// computed at the same time are known.
-    divisible: Vec<(JobId, Job)>,
+    divisible: Vec<(JobId, Job, JobReason)>,
     /// Contents of the jobs anticipated last.
     anticipated: Vec<ContentHash>,
     snapshot: Arc<Mutex<Snapshot>>,
@@ -158,18 +159,18 @@ impl Dispatch {
         self.listening.iter().map(ToString::to_string).collect()
     }
 
-    /// Submits a job; each id may be submitted once per process and is below 2^63. A result that the journal already
+    /// Submits a job, with the reason that the journal states; each id may be submitted once per process and is below 2^63. A result that the journal already
     /// holds is delivered at once. A job with derivatives is sent to workers by the next call of [`Self::next`], in
     /// parts where slots would be idle.
     ///
     /// # Errors
     /// [`DispatchError::Closed`] once the run has been stopped.
-    pub fn submit(&mut self, id: JobId, job: Job) -> Result<(), DispatchError> {
+    pub fn submit(&mut self, id: JobId, job: Job, reason: JobReason) -> Result<(), DispatchError> {
         if divide::is_divisible(&job) {
-            self.divisible.push((id, job));
+            self.divisible.push((id, job, reason));
             return Ok(());
         }
-        let asked = Request::Submit(vec![(id, job)]);
+        let asked = Request::Submit(vec![(id, job, reason)]);
         self.requests.send(asked).map_err(|_| DispatchError::Closed)
     }
 

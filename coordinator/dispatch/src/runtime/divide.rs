@@ -11,8 +11,8 @@
 mod tests;
 
 use crate::scheduler::{Completed, PART};
+use journal::event::Finished;
 use protocol::{
-    event::Finished,
     id::{ContentHash, JobId},
     job::{Answer, Column, Derivative, Failure, Job, Outcome, Reply},
     message::{Attempt, Cost},

@@ -12,13 +12,11 @@ use super::{
     suspend::SuspendDetector,
     worker_control,
 };
-use crate::{
-    journal::{Journal, WriterReport},
-    scheduler::{Command, Completed, ConnectedWorker, Input, Snapshot},
-};
+use crate::scheduler::{Command, Completed, ConnectedWorker, Input, Snapshot};
+use journal::event::{Asked, Event, JobReason};
+use journal::{Journal, WriterReport};
 use link::{CoordinatorEnd, LinkEvent};
 use protocol::{
-    event::Event,
     id::{JobId, RunId, WorkerId},
     job::Job,
     key::Lane,
@@ -49,7 +47,7 @@ const LAST_WRITE: Duration = Duration::from_secs(1);
 #[derive(Debug)]
 pub(super) enum Request {
     /// Jobs submitted together; those with derivatives may be divided into parts.
-    Submit(Vec<(JobId, Job)>),
+    Submit(Vec<(JobId, Job, JobReason)>),
     /// Replaces the jobs that the run will probably submit next, likeliest first.
     Anticipate(Vec<Job>),
     /// Request that arrived on the control socket.
@@ -213,9 +211,15 @@ impl<L: CoordinatorEnd> Engine<L> {
     }
 
     /// Submits jobs; results that the journal already holds are delivered at once.
-    fn submit(&mut self, jobs: Vec<(JobId, Job)>) {
-        let new = jobs.into_iter().filter(|(id, job)| self.is_new(*id, job));
-        let new: Vec<(JobId, Job)> = new.collect();
+    fn submit(&mut self, jobs: Vec<(JobId, Job, JobReason)>) {
+        let mut new = Vec::with_capacity(jobs.len());
+        for (id, job, reason) in jobs {
+            if self.is_new(id, &job) {
+                let asked = Asked::new(id, &job, reason);
+                self.record(Event::Asked(Box::new(asked)));
+                new.push((id, job));
+            }
+        }
         let commands = self.coordination.submit(new, self.begun.elapsed());
         self.execute(commands);
     }

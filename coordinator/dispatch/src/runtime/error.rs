@@ -1,6 +1,7 @@
 //! Errors of opening and running a run, with the remedy where there is one.
 use super::locate::LocateError;
-use crate::{journal::JournalError, scheduler::StopReason};
+use crate::scheduler::StopReason;
+use journal::JournalError;
 use link::LinkError;
 use protocol::{id::JobId, wire::WireError};
 use std::time::Duration;

@@ -27,6 +27,6 @@ pub use dispatch::Dispatch;
 pub(crate) use divide::{anticipated_parts, part_count};
 pub use engine::RunSummary;
 pub use error::DispatchError;
+pub use journal::event::{RunHeader, Spent};
 pub use listen::local_socket;
 pub use options::DispatchOptions;
-pub use protocol::event::{RunHeader, Spent};

@@ -1,5 +1,6 @@
 //! Options for opening a run.
-use protocol::{case::Case, event::RunHeader};
+use journal::event::RunHeader;
+use protocol::case::Case;
 use std::{path::PathBuf, time::Duration};
 
 /// Options for opening a run.

@@ -1,10 +1,8 @@
 //! Parts of a run that do not depend on its link: the scheduler core, initialised from the journal, and the
 //! journal.
 use super::{error::DispatchError, options::DispatchOptions};
-use crate::{
-    journal::{self, Journal, WriterReport},
-    scheduler::{Core, CoreOptions, Policy},
-};
+use crate::scheduler::{Core, CoreOptions, Policy};
+use journal::{Journal, WriterReport};
 use link::Blob;
 use protocol::{
     id::{RunId, draw},

@@ -11,10 +11,10 @@ use super::{
     roster::dismiss,
     state::Core,
 };
+use journal::event::Event;
 use protocol::{
     announce::Announcement,
     case::Reproducibility,
-    event::Event,
     id::WorkerId,
     message::{Heartbeat, ToWorker},
     proof::{MAX_SAMPLES, ReferenceResult},

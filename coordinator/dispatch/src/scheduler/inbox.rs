@@ -8,7 +8,6 @@ use super::{
     stragglers,
 };
 use protocol::{
-    event::Event,
     id::{JobId, WorkerId},
     job::Job,
     message::{FromWorker, Heartbeat, ToWorker},
@@ -59,12 +58,7 @@ fn submit(core: &mut Core, id: JobId, job: Job, now: Duration) {
     if core.has_finished(id) || core.jobs.contains_key(&id) {
         return;
     }
-    let pending = Pending::new(job);
-    core.record(Event::Asked {
-        job: id,
-        work: pending.work,
-    });
-    core.jobs.insert(id, pending);
+    core.jobs.insert(id, Pending::new(job));
     core.queue.insert(id);
     lease::adopt(core, id, now);
     if let Some((from, done)) = core.unclaimed.take(id) {

@@ -3,8 +3,8 @@ use super::{
     completed::Completed,
     notice::{Notice, StopReason},
 };
+use journal::event::{Event, Finished};
 use protocol::{
-    event::{Event, Finished},
     id::{JobId, WorkerId},
     job::Job,
     message::{FromWorker, ToWorker},

@@ -12,22 +12,6 @@ use protocol::{
 };
 use std::time::Duration;
 
-/// Attempt id used for a failure that the coordinator itself records, without any dispatch to a worker.
-pub(super) const COORDINATOR_ATTEMPT: AttemptId = AttemptId(u32::MAX);
-
-/// Builds an attempt id from the epoch (number of the coordinator process) and the number of earlier
-/// dispatches of the job by that process; ids of different processes of a run never coincide.
-const fn attempt_id(epoch: u32, number: u32) -> AttemptId {
-    AttemptId(epoch << 16 | (number & 0xffff))
-}
-
-/// Returns the coordinator process (epoch, from 1) that dispatched an attempt and the number of earlier
-/// dispatches of the job by that process; `None` for a failure that the coordinator itself recorded.
-pub fn epoch_and_number(attempt: AttemptId) -> Option<(u32, u32)> {
-    let AttemptId(number) = attempt;
-    (attempt != COORDINATOR_ATTEMPT).then_some((number >> 16, number & 0xffff))
-}
-
 /// Leases a job to a worker and queues the order to be sent.
 pub(super) fn lease(core: &mut Core, worker: WorkerId, job: JobId, now: Duration) {
     let Some(pending) = core.jobs.get(&job) else {
@@ -40,7 +24,7 @@ pub(super) fn lease(core: &mut Core, worker: WorkerId, job: JobId, now: Duration
     };
     let attempt = Attempt {
         job,
-        attempt: attempt_id(core.options.epoch, pending.next),
+        attempt: AttemptId::new(core.options.epoch, pending.next),
     };
     if !pending.holders.is_empty() {
         core.counts.copies += 1;

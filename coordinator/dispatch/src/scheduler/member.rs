@@ -1,8 +1,8 @@
 //! One admitted worker: the leases held, and the use of its slot time.
 use super::slot_time::{AttemptUse, Clocks, SlotTime, micros};
+use journal::event::{Spent, WorkerAccount};
 use protocol::{
     announce::Announcement,
-    event::{Spent, WorkerAccount},
     id::{JobId, WorkerId},
     message::Attempt,
 };

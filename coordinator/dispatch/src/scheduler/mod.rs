@@ -50,7 +50,6 @@ mod worker_status;
 pub use completed::Completed;
 pub use input::{Command, Drain, Input};
 pub use job_set::JobSet;
-pub use lease::epoch_and_number;
 pub use notice::{Notice, StopReason};
 pub(crate) use part::{PART, is_part};
 pub use policy::{PAUSE_LIMIT, Policy};

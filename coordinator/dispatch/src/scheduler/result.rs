@@ -3,14 +3,14 @@
 use super::{
     completed::Completed,
     input::Command,
-    lease::{COORDINATOR_ATTEMPT, adopt, cancel, release},
+    lease::{adopt, cancel, release},
     notice::{Notice, StopReason},
     slot_time::AttemptUse,
     state::{Core, Pending, millis},
 };
+use journal::event::Finished;
 use protocol::{
-    event::Finished,
-    id::{JobId, WorkerId},
+    id::{AttemptId, JobId, WorkerId},
     job::{Failure, Outcome},
     message::{Attempt, Cost, Done, ToWorker},
 };
@@ -248,7 +248,7 @@ fn give_up(core: &mut Core, job: JobId, failure: Failure) {
         core.commands
             .push(Command::Stop(StopReason::EverythingFails { jobs, last }));
     }
-    let (cost, attempt) = (Cost::default(), COORDINATOR_ATTEMPT);
+    let (cost, attempt) = (Cost::default(), AttemptId::COORDINATOR);
     match failure {
         // another build or another case may do better: not a result of the run
         Failure::Refused { .. } | Failure::Misconfigured { .. } | Failure::Lost { .. } => {

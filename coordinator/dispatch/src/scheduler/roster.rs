@@ -1,6 +1,7 @@
 //! Removal of workers from the run.
 use super::{lease::requeue, member::Member, state::Core};
-use protocol::{event::Event, id::WorkerId};
+use journal::event::Event;
+use protocol::id::WorkerId;
 use std::time::Duration;
 
 /// Removes a worker from the run, books its running attempts as lost and records its last slot-time account.

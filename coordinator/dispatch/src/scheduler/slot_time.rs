@@ -9,7 +9,7 @@
 //! The core sees a slot computing from the order to the result; the worker reports the true duration. The
 //! difference is transit time and counts as starved. This file knows neither workers nor jobs: its callers
 //! pass the number of idle slots and the use of each attempt.
-use protocol::event::Spent;
+use journal::event::Spent;
 use std::time::Duration;
 
 /// Cumulative clocks of the run, shared by all workers' slot-time accounts: time counted as barrier or

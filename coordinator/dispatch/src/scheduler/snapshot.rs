@@ -1,6 +1,7 @@
 //! Snapshot of the state of a run, for progress lines and reports.
 use super::state::Core;
-use protocol::{event::Spent, id::WorkerId};
+use journal::event::Spent;
+use protocol::id::WorkerId;
 use std::time::Duration;
 
 /// State of a run at one moment.

@@ -11,9 +11,9 @@ use super::{
     times::JobDurations,
     unclaimed_results::UnclaimedResults,
 };
+use journal::event::{Account, Event, Spent, WorkerAccount};
 use protocol::{
     case::Reproducibility,
-    event::{Account, Event, Spent, WorkerAccount},
     id::{ContentHash, JobId, RunId, WorkerId},
     job::Job,
     message::{Attempt, ToWorker},

@@ -4,12 +4,10 @@
 //! `HORSEHEAD_SEEDS=2000 cargo test --release -p dispatch simulated` runs the first 2,000 seeds, and
 //! `HORSEHEAD_SEEDS=17..18` the one with the number 17.
 use super::{Cluster, ClusterSetting, Fault, JobSource, job, outcome};
-use crate::{
-    journal::fold_medium,
-    scheduler::{Drain, Notice, Policy},
-};
+use crate::scheduler::{Drain, Notice, Policy};
+use journal::event::Event;
+use journal::fold_medium;
 use protocol::{
-    event::Event,
     id::JobId,
     job::{Column, Individual, Job, Outcome, Reply, SimulateSpec},
 };

@@ -1,9 +1,7 @@
 //! Journal of a simulated coordinator: the bytes of a real one, in memory.
-use crate::journal::{RecoveredRun, fold_medium, record};
-use protocol::{
-    event::{Event, Finished, RunHeader},
-    id::{ContentHash, JobId, RunId},
-};
+use journal::event::{Event, Finished, RunHeader};
+use journal::{RecoveredRun, fold_medium, record};
+use protocol::id::{ContentHash, JobId, RunId};
 use std::{collections::BTreeMap, io::Cursor, mem};
 
 /// Identifier of the simulated run.

@@ -22,12 +22,12 @@ use crate::{
         Command, Core, CoreOptions, Input, JobSet, Notice, Policy, Snapshot, StopReason, is_part,
     },
 };
+use ::journal::event::{Event, Finished};
 use event::ClusterEvent;
 use journal::{RUN, SimulatedJournal};
 use protocol::{
     announce::{Announcement, ModelDescriptor},
     case::Reproducibility,
-    event::{Event, Finished},
     id::{ContentHash, JobId, WorkerId},
     job::{Failure, Job, Outcome},
     message::{Attempt, Done, FromWorker, ToWorker},

@@ -6,7 +6,7 @@ use super::scale::AxisScale;
 use crate::color::{GREY, INK, STRENGTH, VERMILLION};
 use crate::document::Figure;
 use crate::number::count;
-use dispatch::account::Presence;
+use journal::account::Presence;
 
 const LEFT: f64 = 150.0;
 const TOP: f64 = 12.0;

@@ -3,7 +3,7 @@ use crate::data::{Calibration, HistoryPoint};
 use crate::document::{Block, Row, Section, Table};
 use crate::number::{count, duration, fixed, significant};
 use crate::words::objective_heading;
-use dispatch::account::JobCost;
+use journal::account::JobCost;
 
 /// Number of slowest simulations listed in the section.
 const LISTED: usize = 10;

@@ -5,9 +5,9 @@ use crate::color::{BAND, BLUE, GREY, INK};
 use crate::data::{Calibration, WorkerUse};
 use crate::document::{Block, Figure, Row, Section, Table, figures};
 use crate::number::{MISSING, count, duration, percent};
-use dispatch::account;
-use dispatch::account::RunAccount;
-use protocol::event::Spent;
+use journal::account;
+use journal::account::RunAccount;
+use journal::event::Spent;
 
 pub(super) fn calibration(calibration: &Calibration) -> Section {
     let mut blocks = Vec::new();

@@ -1,10 +1,10 @@
 //! Synthesised case with results: machine geometry, plausible curves and a search log.
 use crate::geometry::{self, Pose};
-use dispatch::account::{JobCost, Presence, PresenceMark};
+use journal::account::{JobCost, Presence, PresenceMark};
+use journal::event::Spent;
 use protocol::pumping_unit::failure;
 use protocol::{
     case::{Case, Channel, ChannelRecord, Condition, Objective, Term, Unknown},
-    event::Spent,
     id::WorkerId,
     job::{ChannelScore, Counters, Curves, Evaluation, Reached, Verdict},
     pumping_unit::{

@@ -5,9 +5,8 @@ use crate::cli::{
     run::folder::RunFolder,
 };
 use clap::Args;
-use dispatch::account::{self, HostUse, JobUse, RunAccount};
-use dispatch::journal;
-use protocol::event::Spent;
+use journal::account::{self, HostUse, JobUse, RunAccount};
+use journal::event::Spent;
 use report::table::{self, Table};
 use serde::Serialize;
 use std::{collections::BTreeMap, path::PathBuf};

@@ -5,7 +5,8 @@ use crate::cli::{
     run::{bus, folder::RunFolder, interrupt, kind::AnyRun},
 };
 use clap::Args;
-use protocol::{event::Finished, job::Job};
+use journal::event::Finished;
+use protocol::job::Job;
 use std::path::PathBuf;
 use study::ReplayEvaluator;
 

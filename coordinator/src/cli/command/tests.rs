@@ -16,7 +16,6 @@ use crate::cli::{
     },
 };
 use ::case::{Overrides, load, read_genes, write_genes};
-use dispatch::journal;
 use protocol::{
     case::{Case, EffectSetting},
     pumping_unit::{Machine, PumpingUnit},
@@ -568,7 +567,7 @@ fn help_is_short_and_complete() {
 #[test]
 fn the_way_out_of_damage_is_the_command_of_the_run() {
     let scratch = tempfile::tempdir().unwrap();
-    let header = protocol::event::RunHeader {
+    let header = journal::event::RunHeader {
         kind: DIAGNOSE.to_owned(),
         case: protocol::id::ContentHash::of(b"case"),
         settings: "{}".to_owned(),

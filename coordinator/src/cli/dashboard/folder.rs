@@ -5,9 +5,9 @@ use super::{
 };
 use crate::cli::run::folder::{MANIFEST, RESULT, RunFolder};
 use dashboard::{Board, PageReader, Pages};
-use dispatch::journal::{self, Growth, JournalFollower};
+use journal::event::Event;
+use journal::{Growth, JournalFollower};
 use maud::{Markup, html};
-use protocol::event::Event;
 use report::{
     Block, Section,
     number::{MISSING, count, duration, significant},

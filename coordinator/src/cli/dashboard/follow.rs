@@ -12,12 +12,9 @@ use crate::cli::run::{
     manifest::{CALIBRATE, DIAGNOSE, IDENTIFY},
 };
 use dashboard::{Board, PageReader, Pages};
-use dispatch::journal::{self, Damage, Growth, JournalEntry, JournalFollower};
-use protocol::{
-    case::Case,
-    event::{Event, Finished},
-    job::Job,
-};
+use journal::event::{Event, Finished};
+use journal::{Damage, Growth, JournalEntry, JournalFollower};
+use protocol::{case::Case, job::Job};
 use report::{Block, Report, Section, document::section_markup};
 use std::{
     fs,

@@ -1,15 +1,12 @@
 //! What is known of a run that is followed: a fold over its journal and over the study that is repeated on it.
 use discrepancy::laboratory::Finding;
-use dispatch::{
-    account::{AccountBuilder, Costs, JobCost},
-    journal::{Damage, Growth, JournalEntry, describe_damage},
-};
+use journal::account::{AccountBuilder, Costs, JobCost};
+use journal::event::{Event, Finished};
+use journal::{Damage, Growth, JournalEntry, describe_damage};
 use protocol::{
-    event::{Event, Finished},
     id::WorkerId,
     job::{Answer, Curves, Evaluation, Job, Outcome, Reply},
 };
-use search::strategy::Proposal;
 use std::{
     collections::BTreeMap,
     sync::{Arc, Mutex, MutexGuard, PoisonError},
@@ -106,7 +103,8 @@ impl RunState {
                 own.busy_s += finished.cost.wall_s();
             }
             Event::Begun { .. }
-            | Event::Asked { .. }
+            | Event::Asked(_)
+            | Event::Found { .. }
             | Event::Proved { .. }
             | Event::Accounted(_) => {}
         }
@@ -185,8 +183,6 @@ impl Watch<ProgressView> for SharedState {
     fn progress(&mut self, view: &ProgressView, _: &dyn Fn() -> WorkersSnapshot) {
         self.change(|state| state.progress = view.clone());
     }
-
-    fn asked(&mut self, _id: u64, _proposal: &Proposal) {}
 
     fn entered(&mut self, entry: &LogEntry) {
         self.change(|state| drop(state.history.insert(entry.id, entry.clone())));

@@ -16,11 +16,10 @@ use crate::cli::{
 };
 use case::CaseEffect;
 use discrepancy::identify::UnknownEstimate;
-use dispatch::account::{self, JobCost};
-use dispatch::journal;
+use journal::account::{self, JobCost};
+use journal::event::WorkerAccount;
 use protocol::{
     case::WeightedCondition,
-    event::WorkerAccount,
     job::{Counters, Evaluation, Verdict},
 };
 use report::{self, Calibration, ConditionResult, HistoryPoint, Individual, RivalFit, WorkerUse};

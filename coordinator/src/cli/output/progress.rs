@@ -2,7 +2,7 @@
 use super::terminal;
 use discrepancy::laboratory::Stage;
 use indicatif::{ProgressBar, ProgressStyle};
-use protocol::event::Spent;
+use journal::event::Spent;
 use search::strategy::{CATALOGUE, Preset, preset};
 use std::{
     collections::VecDeque,

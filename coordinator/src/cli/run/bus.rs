@@ -1,9 +1,9 @@
 //! Adapter that makes the dispatcher an evaluator: options, opening, and conversion of its errors to messages
 //! with remedies.
 use crate::cli::{argument::listening::RemoteAccess, output::problem::Problem};
-use dispatch::journal::{self, JournalError};
 use dispatch::runtime::{Dispatch, DispatchError, DispatchOptions, RunHeader, Snapshot};
 use dispatch::scheduler::StopReason;
+use journal::{JournalError, event::JobReason};
 use link::LinkError;
 use protocol::{
     case::Case,
@@ -126,9 +126,9 @@ impl Bus {
 }
 
 impl Evaluator for Bus {
-    fn submit(&mut self, id: JobId, job: Job) -> Result<(), EvaluatorError> {
+    fn submit(&mut self, id: JobId, job: Job, reason: JobReason) -> Result<(), EvaluatorError> {
         self.dispatch
-            .submit(id, job)
+            .submit(id, job, reason)
             .map_err(|error| explain(&error))
     }
 

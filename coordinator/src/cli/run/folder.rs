@@ -9,8 +9,9 @@ use super::{
 use crate::cli::output::{problem::Problem, terminal};
 use anyhow::Context as _;
 use case::{CaseEffect, write_genes};
-use dispatch::journal::{self, JournalSnapshot};
-use protocol::{case::Case, event::Event};
+use journal::JournalSnapshot;
+use journal::event::Event;
+use protocol::case::Case;
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use std::{
     fs, io,

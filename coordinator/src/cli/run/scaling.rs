@@ -10,13 +10,12 @@ use crate::cli::{
     output::{problem::Problem, terminal},
 };
 use anyhow::Context as _;
-use dispatch::account;
-use dispatch::journal;
 use dispatch::runtime::{self, BenchPlan, BenchWorkers, processor_time, sleep_through};
 use dispatch::simulated::{SimulatedDerivatives, SimulatedSearch as JobSource};
+use journal::account;
+use journal::event::{JobReason, Spent};
 use protocol::{
     case::Case,
-    event::Spent,
     id::JobId,
     job::{Column, Individual, Job, Reply, SimulateSpec},
 };
@@ -364,7 +363,7 @@ impl ScalingRun<'_> {
                     ..SimulateSpec::new(individual, reply)
                 });
                 let id = DERIVATIVE_JOBS + kind as u64 * count + index;
-                evaluator.submit(JobId(id), job)?;
+                evaluator.submit(JobId(id), job, JobReason::outside_search("derivatives"))?;
             }
             for _ in 0..count {
                 times[kind] += evaluator.next().await?.cost.wall_s();

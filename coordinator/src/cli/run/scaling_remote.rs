@@ -15,13 +15,11 @@ use crate::cli::{
     output::{problem::Problem, terminal},
 };
 use anyhow::Context as _;
-use dispatch::{
-    journal,
-    runtime::{
-        self,
-        control::{messages::ControlRequest, send_request},
-    },
+use dispatch::runtime::{
+    self,
+    control::{messages::ControlRequest, send_request},
 };
+use journal::event::JobReason;
 use protocol::{id::JobId, job::Job};
 use std::{
     collections::VecDeque,
@@ -249,8 +247,8 @@ struct NumberedSearch<'a> {
 }
 
 impl Evaluator for NumberedSearch<'_> {
-    fn submit(&mut self, id: JobId, job: Job) -> Result<(), EvaluatorError> {
-        self.bus.submit(JobId(self.first + id.0), job)
+    fn submit(&mut self, id: JobId, job: Job, reason: JobReason) -> Result<(), EvaluatorError> {
+        self.bus.submit(JobId(self.first + id.0), job, reason)
     }
 
     fn anticipate(&mut self, jobs: Vec<Job>) -> Result<(), EvaluatorError> {

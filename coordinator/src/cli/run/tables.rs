@@ -1,24 +1,10 @@
-//! Export of a run as tables for queries: its study is repeated from its journal, and every simulation that
-//! the study asks for becomes a row.
-use super::{
-    bus,
-    calibration::{Calibration, calibrate},
-    folder::RunFolder,
-    interrupt,
-    manifest::Manifest,
-};
+//! Export of a run as tables for queries: a fold over its journal.
+use super::{bus, calibration::Calibration, folder::RunFolder, manifest::Manifest};
 use crate::cli::output::{problem::Problem, terminal};
-use discrepancy::laboratory::Stage;
-use dispatch::journal;
-use protocol::{case::Case, event::Finished, job::Job};
-use search::strategy::Proposal;
+use protocol::case::Case;
 use serde::Serialize;
-use std::{cell::RefCell, collections::BTreeMap, path::PathBuf};
-use store::{ColumnLabel, Exported, Format, Store, StoreError, Target};
-use study::{
-    EvaluatorError, ProgressView, ReplayEvaluator, StageView, Stop, StudyError, Watch,
-    WorkersSnapshot,
-};
+use std::path::PathBuf;
+use store::{Contents, Exported, Format, Store, StoreError, Target};
 
 /// Returns the properties of a run from its manifest, as names and values for the exported tables.
 pub(crate) fn run_properties<S: Serialize>(
@@ -71,46 +57,6 @@ pub(crate) fn run_properties<S: Serialize>(
     ])
 }
 
-/// Labels (purpose and generation) of simulations that were requested and whose results are awaited, by job
-/// number.
-type Waiting = RefCell<BTreeMap<u64, ColumnLabel>>;
-
-/// Observer of a study that records the purpose and generation of each requested simulation.
-pub(crate) struct Labels<'a>(&'a Waiting);
-
-impl Watch<ProgressView> for Labels<'_> {
-    fn progress(&mut self, _: &ProgressView, _: &dyn Fn() -> WorkersSnapshot) {}
-
-    fn asked(&mut self, id: u64, proposal: &Proposal) {
-        let label = ColumnLabel {
-            generation: Some(proposal.generation),
-            purpose: proposal.purpose.as_str().to_owned(),
-        };
-        self.0.borrow_mut().insert(id, label);
-    }
-}
-
-impl Watch<StageView> for Labels<'_> {
-    fn progress(&mut self, _: &StageView, _: &dyn Fn() -> WorkersSnapshot) {}
-
-    fn asked(&mut self, id: u64, stage: &Stage) {
-        let label = ColumnLabel {
-            generation: None,
-            purpose: stage.name().to_owned(),
-        };
-        self.0.borrow_mut().insert(id, label);
-    }
-}
-
-/// Returns the label of simulations requested outside the search, which are the two parameter sets that the
-/// result tables compare.
-fn comparison() -> ColumnLabel {
-    ColumnLabel {
-        generation: None,
-        purpose: "comparison".to_owned(),
-    }
-}
-
 /// Run whose tables are exported.
 pub(crate) struct Source<'a> {
     pub(crate) folder: &'a RunFolder,
@@ -135,22 +81,18 @@ pub(crate) fn calibration(run: &Calibration) -> anyhow::Result<Vec<PathBuf>> {
         case: &run.case,
         facts: run_properties(&run.manifest)?,
     };
-    let (exported, notes) = export(&source, target, async |recorded, labels, stop| {
-        calibrate(recorded, run, labels, stop).await.map(drop)
-    })?;
+    let (exported, notes) = export(&source, target)?;
     terminal::note(&notes);
     Ok(exported.files)
 }
 
-/// Reads the journal of a run, repeats its study with the recorded results, and writes the tables; also
-/// returns notes on missing results.
+/// Reads the journal of a run and writes the tables; also returns notes on missing results.
 ///
 /// # Errors
-/// If there is no journal, the target cannot be written, or the user stops.
+/// If there is no journal, or the target cannot be written.
 pub(crate) fn export(
     source: &Source<'_>,
     target: Target,
-    repeat: impl AsyncFnOnce(&mut ReplayEvaluator<'_>, &mut Labels<'_>, &mut Stop) -> anyhow::Result<()>,
 ) -> anyhow::Result<(Exported, Vec<String>)> {
     let path = source.folder.file(journal::FILE);
     if !path.exists() {
@@ -168,45 +110,21 @@ pub(crate) fn export(
     for (name, value) in &source.facts {
         store.fact(name, value)?;
     }
-    let recording = store.journal(&path)?;
-    let mut notes = journal::describe_damage(&recording.report().damage);
-    let (waiting, mut failed) = (Waiting::default(), None);
-    let mut seen = |job: &Job, finished: &Finished| {
-        let label = waiting.borrow_mut().remove(&finished.job().0);
-        let added = store.evaluation(label.unwrap_or_else(comparison), job, finished);
-        added.map_err(|error| {
-            let message = error.to_string();
-            failed = Some(error);
-            EvaluatorError {
-                message,
-                help: None,
-            }
-        })
-    };
-    let mut recorded = ReplayEvaluator::new(&recording, &mut seen);
-    let repeated = bus::block_on(async {
-        let mut stop = interrupt::listen();
-        repeat(&mut recorded, &mut Labels(&waiting), &mut stop).await
-    });
-    let (ended, unknown) = (recorded.ended(), recorded.unknown());
-    if let Some(error) = failed {
-        return Err(error.into());
+    let Contents {
+        damage,
+        unanswered,
+        unknown,
+    } = store.journal(&path)?;
+    let mut notes = journal::describe_damage(&damage);
+    if unanswered > 0 && !source.folder.is_finished() {
+        notes.push(format!(
+            "{unanswered} of the simulations that the run has asked for so far have no result in the journal"
+        ));
     }
-    if let Err(error) = repeated {
-        if matches!(error.downcast_ref(), Some(StudyError::Interrupted)) {
-            return Err(error);
-        }
-        notes.push(if ended {
-            format!(
-                "{unknown} of the simulations that the run has asked for so far have no result \
-                 in the journal"
-            )
-        } else {
-            format!(
-                "the run could not be replayed completely from its journal: the table `evaluations` is \
-                 incomplete, the table `results` is complete: {error:#}"
-            )
-        });
+    if unknown > 0 {
+        notes.push(format!(
+            "the requests of {unknown} results cannot be read: these are in the table `results` and not in `evaluations`"
+        ));
     }
     store.fact("missing", &notes.join("\n"))?;
     Ok((store.finish()?, notes))

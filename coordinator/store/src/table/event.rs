@@ -1,7 +1,7 @@
 //! Definition of the tables of workers, of run events, and of damaged sections of the journal.
 use crate::{column::Columns, row::Happened};
-use dispatch::journal::Damage;
-use protocol::event::{Spent, WorkerAccount};
+use journal::Damage;
+use journal::event::{Spent, WorkerAccount};
 
 pub(super) fn workers() -> Columns<WorkerAccount> {
     let mut columns = Columns::new()

@@ -14,11 +14,9 @@ use super::{
     row::{Brief, EffectRow, Evaluated, Fact, Happened, Scored},
     writer::{TableHandle, TableWriter},
 };
-use dispatch::journal::Damage;
-use protocol::{
-    case::{Case, Unknown},
-    event::WorkerAccount,
-};
+use journal::Damage;
+use journal::event::WorkerAccount;
+use protocol::case::{Case, Unknown};
 
 /// Handles of all tables of an export, by which rows are added to them.
 pub(super) struct Tables {

@@ -30,6 +30,11 @@ pub(super) fn evaluations(case: &Case) -> Columns<Evaluated> {
             "effects",
             "number of effects added to those of the case, listed in the table effects",
             |row| Some(row.effects as u64),
+        )
+        .integer(
+            "columns",
+            "number of unknowns and effect parameters by which it was differentiated",
+            |row| Some(u64::from(row.columns)),
         );
     for (place, gene) in case.unknowns.iter().enumerate() {
         let about = format!("gene {} [{}]", gene.name, gene.unit);

@@ -2,10 +2,8 @@
 //! simulated clock.
 use super::row::{MAX_WORKERS, Overheads, SLOW_ONE_IN, ScalingRow, Shares, SlotMode};
 use dispatch::simulated::{Cluster, ClusterSetting, SimulatedDerivatives, SimulatedSearch};
-use protocol::{
-    event::Spent,
-    job::{Derivative, Per, to_single_precision},
-};
+use journal::event::Spent;
+use protocol::job::{Derivative, Per, to_single_precision};
 use search::{
     space::Space,
     strategy::{EvaluationResult, Residual, Strategy},

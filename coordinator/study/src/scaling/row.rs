@@ -1,5 +1,5 @@
 //! Scaling result of one search on one number of slots (parallel jobs): speed, and use of slot time.
-use protocol::event::Spent;
+use journal::event::Spent;
 use search::random::{Phase, Streams};
 use serde::{Deserialize, Serialize};
 

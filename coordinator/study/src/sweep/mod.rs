@@ -5,7 +5,7 @@
 //! searches request is computed once, and a resumed run finds all results in its journal. The result of a
 //! search depends neither on the other searches nor on the order in which results arrive.
 use super::{
-    calibrate::{MIN_FAILED_EVALUATIONS, all_failed, anticipated, entry, residual, score},
+    calibrate::{MIN_FAILED_EVALUATIONS, all_failed, anticipated, entry, reason, residual, score},
     error::StudyError,
     evaluator::Evaluator,
     job_number::JobNumbers,
@@ -170,7 +170,7 @@ impl<'a> Sweep<'a> {
                 } else if let Some(asked) = self.open.get_mut(&id) {
                     asked.push((index, proposal));
                 } else {
-                    evaluator.submit(id, job)?;
+                    evaluator.submit(id, job, reason(&proposal))?;
                     self.open.insert(id, vec![(index, proposal)]);
                 }
             }

@@ -6,7 +6,7 @@ use case::{
     pumping_unit::{count_samples, mesh, read_card},
     read_genes, write_genes,
 };
-use dispatch::journal::{self, JournalError, ReadReport};
+use journal::{JournalError, ReadReport};
 use protocol::{case::Case, pumping_unit::Smoothing, wire};
 use std::{
     fmt::Display,

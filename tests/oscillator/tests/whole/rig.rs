@@ -160,7 +160,7 @@ impl Rig {
             .stderr(Stdio::null())
             .spawn()
             .unwrap();
-        let journal = run.join(dispatch::journal::FILE);
+        let journal = run.join(journal::FILE);
         let begun = Instant::now();
         while fs::metadata(&journal).map_or(0, |file| file.len()) < bytes {
             assert!(

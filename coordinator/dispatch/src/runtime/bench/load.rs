@@ -1,5 +1,6 @@
 //! Load of empty jobs for benchmarks, queued ahead so that workers do not wait.
 use crate::runtime::{dispatch::Dispatch, error::DispatchError};
+use journal::event::JobReason;
 use protocol::{id::JobId, job::Job};
 
 /// Size of a job sent to a worker (bytes), about that of a gene vector with its frame.
@@ -65,6 +66,6 @@ impl Load {
         };
         self.next += 1;
         self.open += 1;
-        dispatch.submit(JobId(self.next - 1), job)
+        dispatch.submit(JobId(self.next - 1), job, JobReason::default())
     }
 }

@@ -5,7 +5,8 @@ use crate::{
     runtime::{dispatch::Dispatch, error::DispatchError, listen, options::DispatchOptions},
     simulated::JobSource,
 };
-use protocol::{event::Spent, id::JobId, job::Job};
+use journal::event::{JobReason, Spent};
+use protocol::{id::JobId, job::Job};
 use std::time::{Duration, Instant};
 use tokio::time::sleep;
 
@@ -56,7 +57,7 @@ pub async fn sleep_through(
     while !source.is_done() {
         for (id, job) in source.ask(slots.saturating_sub(open)) {
             open += 1;
-            dispatch.submit(JobId(id), sleeping((id, job)))?;
+            dispatch.submit(JobId(id), sleeping((id, job)), JobReason::default())?;
         }
         let anticipated = source.anticipate(slots.saturating_sub(open));
         dispatch.anticipate(anticipated.into_iter().map(sleeping).collect())?;

@@ -3,7 +3,7 @@ use super::{
     simulated::{Cluster, ClusterSetting, Fault, Generations},
     *,
 };
-use protocol::event::{Event, WorkerAccount};
+use journal::event::{Event, WorkerAccount};
 
 const LIMIT: Duration = Duration::from_hours(2);
 

@@ -1,10 +1,10 @@
 //! Scenario tests of the scheduler without sockets, files or clocks.
 use super::*;
 use crate::simulated::{self, CASE, MODEL, PROOF, announcement, cost, job};
+use journal::event::{Event, Spent};
 use protocol::{
     announce::Announcement,
     case::Reproducibility,
-    event::{Event, Spent},
     id::{AttemptId, ContentHash, JobId, RunId, WorkerId},
     job::{Answer, Failure, Outcome},
     message::{Assignment, Attempt, Done, FromWorker, Heartbeat, ToWorker},

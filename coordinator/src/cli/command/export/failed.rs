@@ -2,9 +2,9 @@
 //! into folders for inspection.
 use crate::cli::{output::problem::Problem, run::folder::RunFolder};
 use anyhow::Context as _;
-use dispatch::journal::{self, JournalSnapshot};
+use journal::JournalSnapshot;
+use journal::event::{Event, Finished};
 use protocol::{
-    event::{Event, Finished},
     file::is_below,
     job::{Failure, FailureFiles, Outcome},
 };

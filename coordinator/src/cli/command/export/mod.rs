@@ -7,7 +7,6 @@ use crate::cli::{
     output::{problem::EXIT_CODES, terminal},
     run::{
         folder::{CASE, MANIFEST, RunFolder},
-        kind::AnyRun,
         manifest::Manifest,
         tables::{self, Source},
     },
@@ -27,15 +26,15 @@ Examples:
 
   horsehead export runs/tank --failed
 
-Works while the run goes on, and with a damaged journal, as far as that goes; the journal is not
-changed. The table `dictionary` says what every column means.
+Works for every kind of run, while it goes on, and with a damaged journal, as far as that goes; the
+journal is not changed. The table `dictionary` says what every column means.
 
 With --failed, what somebody's own program left where it failed: a folder for each individual,
 with what was filled in, what the program wrote and said, and `why.txt`. Of long files the end
 travels; a worker sends the folders of the first failures of every slot.
 {EXIT_CODES}"))]
 pub(super) struct Arguments {
-    /// Run folder of a calibration or diagnosis.
+    /// Run folder.
     #[arg(value_name = "RUN", env = "HORSEHEAD_RUN")]
     run: PathBuf,
     /// Fetch the files that failed runs of an external program left, instead of tables [default folder:
@@ -123,10 +122,7 @@ fn export(arguments: &Arguments) -> anyhow::Result<ExportOutput> {
         case: &case,
         facts: tables::run_properties(&manifest)?,
     };
-    let (exported, notes) = tables::export(&source, target, async |recorded, labels, stop| {
-        let run = AnyRun::open(path)?;
-        run.replay(recorded, labels, stop).await.map(drop)
-    })?;
+    let (exported, notes) = tables::export(&source, target)?;
     let files = exported.files.iter();
     Ok(ExportOutput {
         run: path.display().to_string(),

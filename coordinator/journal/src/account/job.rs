@@ -1,9 +1,7 @@
 //! Statistics of a run's jobs by kind, with their durations, and the jobs that were given up with the
 //! reasons.
-use protocol::{
-    event::Finished,
-    job::{Outcome, Verdict},
-};
+use crate::event::Finished;
+use protocol::job::{Outcome, Verdict};
 use std::collections::BTreeMap;
 use support::quantile;
 

@@ -1,7 +1,7 @@
 //! State of a run as it follows from the events of its journal, of which a new coordinator process goes on.
 use super::read::{JournalEntry, ReadReport};
+use crate::event::{Event, RunHeader};
 use protocol::{
-    event::{Event, RunHeader},
     id::{JobId, RunId, WorkerId},
     proof::ReferenceResult,
 };
@@ -20,20 +20,24 @@ const MAX_ABSENT_EPOCHS: u32 = 8;
 
 /// State of a run, accumulated from the events of its journal.
 #[derive(Debug, Default)]
-pub(crate) struct RecoveredRun {
+pub struct RecoveredRun {
     pub(super) begun: Option<(RunId, RunHeader)>,
     epoch: u32,
-    pub(crate) model_digest: Option<String>,
-    pub(crate) proof: Option<ReferenceResult>,
+    /// Digest of the model (numerics) on the run's first worker.
+    pub model_digest: Option<String>,
+    /// Result of the case's reference individual on the run's first worker.
+    pub proof: Option<ReferenceResult>,
     /// Workers that joined the run and did not leave, with the coordinator process (epoch) that they joined.
-    pub(crate) present: BTreeMap<WorkerId, u32>,
+    pub present: BTreeMap<WorkerId, u32>,
     /// Jobs with the offsets of their results in the journal (bytes), in its order.
-    pub(crate) results: Vec<(JobId, u64)>,
+    pub results: Vec<(JobId, u64)>,
+    /// Encoded entries of the study by number; of several with the same number the first counts.
+    pub found: BTreeMap<u64, Vec<u8>>,
 }
 
 impl RecoveredRun {
     /// Adds the next event of the journal.
-    pub(crate) fn apply(&mut self, entry: JournalEntry, event: Event) {
+    pub fn apply(&mut self, entry: JournalEntry, event: Event) {
         match event {
             Event::Begun { run, header } => self.begun = self.begun.take().or(Some((run, header))),
             Event::Opened { epoch, .. } => {
@@ -56,13 +60,16 @@ impl RecoveredRun {
                 self.proof.get_or_insert(proof);
             }
             Event::Finished(finished) => self.results.push((finished.job(), entry.at)),
-            Event::Asked { .. } | Event::Accounted(_) => {}
+            Event::Asked(_) | Event::Accounted(_) => {}
+            Event::Found { number, entry } => {
+                self.found.entry(number).or_insert_with(|| entry.into_vec());
+            }
         }
     }
 
     /// Returns a number for this coordinator process (epoch) that no earlier process of the run has used:
     /// identifiers of attempts contain it, and workers of a lost process may still hold attempts.
-    pub(crate) fn next_epoch(&self, report: &ReadReport) -> u32 {
+    pub fn next_epoch(&self, report: &ReadReport) -> u32 {
         let damaged = damaged_bytes(report)
             .div_ceil(MIN_OPENED_BYTES)
             .min(MOST_HIDDEN);

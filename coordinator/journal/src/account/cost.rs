@@ -1,5 +1,5 @@
 //! Cost of each job of a run, by job number.
-use protocol::event::Finished;
+use crate::event::Finished;
 use std::collections::BTreeMap;
 
 /// Cost of one job.

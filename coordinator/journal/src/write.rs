@@ -1,6 +1,7 @@
 //! Writing a journal: one thread, one flush for all queued records, and retries on a full disk.
 use super::record::record;
-use protocol::{event::Event, id::JobId};
+use crate::event::Event;
+use protocol::id::JobId;
 use std::{
     fs::{self, File},
     io::{self, Seek, SeekFrom, Write},
@@ -125,7 +126,7 @@ impl<M: Medium, F: FnMut(WriterReport)> Writer<M, F> {
             let mut jobs = Vec::new();
             let mut is_due = false;
             for event in std::iter::once(first).chain(events.try_iter()) {
-                is_due |= !matches!(event, Event::Asked { .. });
+                is_due |= !matches!(event, Event::Asked(_));
                 match record(&event) {
                     Ok(record) => {
                         batch.extend_from_slice(&record);
@@ -203,7 +204,7 @@ impl<M: Medium, F: FnMut(WriterReport)> Writer<M, F> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::journal::sample::result;
+    use crate::sample::result;
     use std::sync::Mutex;
 
     /// Mock disk with limited capacity, which writes as much as fits and then fails.

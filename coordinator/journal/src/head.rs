@@ -7,10 +7,8 @@ use super::{
     read::fold,
     record::{HEAD, record},
 };
-use protocol::{
-    event::{Event, RunHeader},
-    id::RunId,
-};
+use crate::event::{Event, RunHeader};
+use protocol::id::RunId;
 use std::path::Path;
 use support::atomic_file;
 

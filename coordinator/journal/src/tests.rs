@@ -5,11 +5,10 @@ use super::{
     sample::{finished, result},
     *,
 };
+use crate::event::{Event, RunHeader};
 use protocol::{
-    event::{Event, RunHeader},
     id::{ContentHash, JobId, RunId},
     job::{Failure, Outcome},
-    wire::VERSION,
 };
 use std::{
     collections::BTreeMap,
@@ -52,7 +51,8 @@ fn read(path: &Path) -> (BTreeMap<u64, Event>, Option<RunId>, Vec<Damage>) {
         | Event::Joined { .. }
         | Event::Left { .. }
         | Event::Closed
-        | Event::Asked { .. }
+        | Event::Asked(_)
+        | Event::Found { .. }
         | Event::Proved { .. }
         | Event::Accounted(_) => {}
     });
@@ -534,4 +534,35 @@ fn a_follower_skips_damage_and_tells_a_replaced_or_missing_journal() {
     assert!(!follower.has_result(JobId(41)));
     fs::remove_file(&path).unwrap();
     assert_eq!(follower.read(|_, _| {}).unwrap(), Growth::Missing);
+}
+
+#[test]
+fn an_entry_of_the_study_is_written_once_and_compared_by_later_processes() {
+    let scratch = tempfile::tempdir().unwrap();
+    for _ in 0..2 {
+        let (journal, _) = open(scratch.path()).unwrap();
+        for number in 0..3 {
+            journal.enter(number, vec![7; 3]).unwrap();
+        }
+    }
+    let (journal, _) = open(scratch.path()).unwrap();
+    let refused = journal.enter(1, vec![8; 3]).unwrap_err();
+    assert!(matches!(
+        refused,
+        JournalError::EntryDiffers { number: 1, .. }
+    ));
+    assert!(
+        refused.to_string().contains("entry 1 of the study"),
+        "{refused}"
+    );
+    drop(journal);
+    let mut entries = Vec::new();
+    fold(&scratch.path().join(FILE), |_, event| {
+        if let Event::Found { number, entry } = event {
+            entries.push((number, entry.into_vec()));
+        }
+    })
+    .unwrap();
+    let expected: Vec<(u64, Vec<u8>)> = (0..3).map(|number| (number, vec![7; 3])).collect();
+    assert_eq!(entries, expected);
 }

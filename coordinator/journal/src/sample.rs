@@ -1,6 +1,6 @@
 //! Sample events for tests of code that reads or writes journals.
+use crate::event::{Event, Finished};
 use protocol::{
-    event::{Event, Finished},
     id::{AttemptId, ContentHash, JobId},
     job::{Answer, Outcome},
     message::{Attempt, Cost},

@@ -4,10 +4,8 @@ use super::{
     index::result_at,
     read::{Damage, JournalEntry, fold_from},
 };
-use protocol::{
-    event::{Event, Finished},
-    id::JobId,
-};
+use crate::event::{Event, Finished};
+use protocol::id::JobId;
 use std::{
     collections::BTreeMap,
     fs::{self, File},

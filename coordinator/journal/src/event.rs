@@ -1,12 +1,13 @@
 //! Journal entries: all events that a coordinator writes to the journal. Readers of a run are folds over the
 //! stream of these events.
-use crate::{
+use protocol::{
     id::{ContentHash, JobId, RunId, WorkerId},
-    job::Outcome,
+    job::{Individual, Job, Outcome},
     message::{Attempt, Cost},
     proof::ReferenceResult,
 };
 use serde::{Deserialize, Serialize};
+use serde_bytes::ByteBuf;
 
 /// Settings that determine the result of a run; a run is resumed only with the same settings.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -54,14 +55,8 @@ pub enum Event {
         /// Reason in words why the worker left or is considered lost.
         reason: String,
     },
-    /// A job was requested by the study.
-    Asked {
-        /// Id of the requested job.
-        job: JobId,
-        /// Content hash of the encoded job; a job id denotes the same content in all coordinator processes of
-        /// a run.
-        work: ContentHash,
-    },
+    /// A job was requested by the study; written by each coordinator process that does not find its result.
+    Asked(Box<Asked>),
     /// The only accepted result of a job.
     Finished(Box<Finished>),
     /// The coordinator ended the run regularly.
@@ -75,6 +70,65 @@ pub enum Event {
     /// Use of the slots' time up to now; written periodically, when workers leave, and at the end. The last
     /// account of a worker counts.
     Accounted(Box<Account>),
+    /// The study found or concluded something. Entries are numbered from 0, hold no times, and do not depend on the
+    /// order in which results arrive: a resumed study finds the same again.
+    Found {
+        /// Number of the entry in the study.
+        number: u64,
+        /// Encoded entry, which the study alone interprets.
+        entry: ByteBuf,
+    },
+}
+
+/// Job that the study requested: what is simulated, and why.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Asked {
+    /// Id of the requested job.
+    pub job: JobId,
+    /// Content hash of the encoded job; a job id denotes the same content in all coordinator processes of a run.
+    pub work: ContentHash,
+    /// Individual that the job simulates; none if it simulates nothing.
+    pub individual: Option<Individual>,
+    /// Number of parameters by which the simulation is differentiated.
+    pub columns: u32,
+    /// Reason for which the study requested the job.
+    pub reason: JobReason,
+}
+
+impl Asked {
+    /// Creates the entry of a job that is requested for a reason.
+    pub fn new(id: JobId, job: &Job, reason: JobReason) -> Self {
+        let columns = match job {
+            Job::Simulate(spec) => spec.columns.len(),
+            Job::Own { .. } | Job::Describe | Job::Nothing { .. } => 0,
+        };
+        Self {
+            job: id,
+            work: job.work_hash(),
+            individual: job.individual().cloned(),
+            columns: u32::try_from(columns).unwrap_or(u32::MAX),
+            reason,
+        }
+    }
+}
+
+/// Reason for which a study requests a job.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct JobReason {
+    /// Purpose in the search, or stage of the diagnosis, in one word.
+    pub purpose: String,
+    /// Generation of the search in which the individual was proposed; none outside a search.
+    pub generation: Option<u32>,
+}
+
+impl JobReason {
+    /// Creates the reason of a job that is requested outside a search.
+    pub fn outside_search(purpose: &str) -> Self {
+        Self {
+            purpose: purpose.to_owned(),
+            generation: None,
+        }
+    }
 }
 
 /// Use of slot time by all workers in one coordinator process.

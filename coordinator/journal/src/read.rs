@@ -3,8 +3,8 @@ use super::{
     error::JournalError,
     record::{MARK, RECORD_HEADER, checksum},
 };
+use crate::event::Event;
 use protocol::{
-    event::Event,
     job::{Failure, Outcome},
     wire::{self, BODY_LIMIT},
 };
@@ -112,7 +112,7 @@ pub(super) fn fold_from(
 
 /// Error of reading a journal, without its path.
 #[derive(Debug)]
-pub(crate) enum ReadError {
+pub enum ReadError {
     /// The medium cannot be read.
     Io(io::Error),
     /// An intact record was written by another version of this program.
@@ -147,7 +147,7 @@ impl ReadError {
 ///
 /// # Errors
 /// [`ReadError`] as [`fold`].
-pub(crate) fn fold_medium<M: Read + Seek>(
+pub fn fold_medium<M: Read + Seek>(
     mut medium: M,
     from: u64,
     mut apply: impl FnMut(JournalEntry, Event),

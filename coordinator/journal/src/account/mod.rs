@@ -8,11 +8,9 @@ mod job;
 pub use cost::{Costs, JobCost};
 pub use job::JobUse;
 
-use crate::journal::{self, Damage, JournalError};
-use protocol::{
-    event::{Event, Spent, WorkerAccount},
-    id::WorkerId,
-};
+use crate::event::{Event, Spent, WorkerAccount};
+use crate::{Damage, JournalError, fold};
+use protocol::id::WorkerId;
 use std::{collections::BTreeMap, path::Path};
 
 /// Minimum share of slot time from which a cause of lost slot time is reported \[1\].
@@ -90,7 +88,7 @@ pub struct PresenceMark {
 /// [`JournalError::Io`] if the journal cannot be read, [`JournalError::Version`] if another version wrote it.
 pub fn read(path: &Path) -> Result<RunAccount, JournalError> {
     let mut folding = AccountBuilder::default();
-    let report = journal::fold(path, |_, event| folding.apply(&event))?;
+    let report = fold(path, |_, event| folding.apply(&event))?;
     Ok(folding.finish(report.damage))
 }
 
@@ -100,7 +98,7 @@ pub fn read(path: &Path) -> Result<RunAccount, JournalError> {
 /// [`JournalError::Io`] if the journal cannot be read, [`JournalError::Version`] if another version wrote it.
 pub fn read_with_costs(path: &Path) -> Result<(RunAccount, Costs), JournalError> {
     let (mut folding, mut costs) = (AccountBuilder::default(), Costs::new());
-    let report = journal::fold(path, |_, event| {
+    let report = fold(path, |_, event| {
         if let Event::Finished(finished) = &event {
             cost::add(&mut costs, finished);
         }
@@ -146,7 +144,8 @@ impl AccountBuilder {
             | Event::Joined { .. }
             | Event::Closed
             | Event::Proved { .. }
-            | Event::Asked { .. } => {}
+            | Event::Asked(_)
+            | Event::Found { .. } => {}
         }
     }
 
@@ -275,9 +274,9 @@ pub fn reasons(spent: &Spent) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::journal::{Journal, sample::finished};
+    use crate::event::{Account, RunHeader};
+    use crate::{FILE, Journal, sample::finished};
     use protocol::{
-        event::{Account, RunHeader},
         id::{ContentHash, RunId},
         job::{Answer, Failure, Outcome},
     };
@@ -345,7 +344,7 @@ mod tests {
                     .unwrap();
             }
         }
-        let account = read(&folder.path().join(journal::FILE)).unwrap();
+        let account = read(&folder.path().join(FILE)).unwrap();
         assert_eq!((account.processes, account.workers.len()), (2, 2));
         assert_eq!(account.workers[0].spent.useful_us, 120);
         assert_eq!(account.workers[0].done, 6);

@@ -1,5 +1,6 @@
 //! Errors of opening, reading and writing a journal, with the remedy in the message.
-use protocol::wire::{VERSION, WireError};
+use crate::record::VERSION;
+use protocol::wire::WireError;
 use std::{io, path::PathBuf};
 
 /// Reason why a journal cannot be used.
@@ -81,6 +82,17 @@ pub enum JournalError {
     Deleted {
         /// Path of the journal.
         path: PathBuf,
+    },
+    /// The study found something else than an earlier process of the run.
+    #[error(
+        "entry {number} of the study differs from the one that the journal {} holds: the run was continued with          another build or on other data; continue with the build that began it, or choose another run folder",
+        path.display()
+    )]
+    EntryDiffers {
+        /// Path of the journal.
+        path: PathBuf,
+        /// Number of the entry.
+        number: u64,
     },
     /// A record cannot be encoded or decoded.
     #[error(transparent)]

@@ -9,13 +9,13 @@ use super::{
     recovered::{RecoveredRun, damaged_bytes},
     write::{NamedFile, Writer, WriterReport, is_at},
 };
+use crate::event::{Event, Finished, RunHeader};
 use protocol::{
-    event::{Event, Finished, RunHeader},
     id::{JobId, RunId, WorkerId},
     proof::ReferenceResult,
 };
 use std::{
-    collections::BTreeSet,
+    collections::{BTreeMap, BTreeSet},
     fs::{File, OpenOptions, TryLockError},
     io::{self, Seek, SeekFrom, Write},
     path::{Path, PathBuf},
@@ -55,6 +55,8 @@ pub struct OpenedRun {
 pub struct Journal {
     path: PathBuf,
     results: Results,
+    /// Entries of the study that earlier processes recorded, by number.
+    found: BTreeMap<u64, Vec<u8>>,
     to_writer: Option<mpsc::Sender<Event>>,
     writer: Option<thread::JoinHandle<()>>,
     closing: Arc<AtomicBool>,
@@ -132,6 +134,7 @@ impl Journal {
         };
         let journal = Self {
             results: Results::new(&path, past.results)?,
+            found: past.found,
             path,
             to_writer: Some(to_writer),
             writer: Some(writer),
@@ -167,6 +170,26 @@ impl Journal {
             Ok(())
         } else {
             Err(JournalError::Closed)
+        }
+    }
+
+    /// Records an entry of the study under its number. One that an earlier process of the run recorded is compared
+    /// with it and not written twice.
+    ///
+    /// # Errors
+    /// [`JournalError::EntryDiffers`] if the recorded entry is another one, [`JournalError::Closed`] if the writing
+    /// thread has ended.
+    pub fn enter(&self, number: u64, entry: Vec<u8>) -> Result<(), JournalError> {
+        match self.found.get(&number) {
+            Some(recorded) if *recorded == entry => Ok(()),
+            Some(_) => Err(JournalError::EntryDiffers {
+                path: self.path.clone(),
+                number,
+            }),
+            None => self.append(Event::Found {
+                number,
+                entry: entry.into(),
+            }),
         }
     }
 

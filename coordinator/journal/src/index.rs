@@ -1,7 +1,7 @@
 //! Index of a journal's results by job, with random access to the records.
 use super::{error::JournalError, record::RECORD_HEADER};
+use crate::event::{Event, Finished};
 use protocol::{
-    event::{Event, Finished},
     id::JobId,
     wire::{self, WireError},
 };
@@ -89,7 +89,8 @@ pub(super) fn result_at(file: &File, at: u64) -> Result<Option<Finished>, Record
         | Event::Joined { .. }
         | Event::Left { .. }
         | Event::Closed
-        | Event::Asked { .. }
+        | Event::Asked(_)
+        | Event::Found { .. }
         | Event::Proved { .. }
         | Event::Accounted(_) => Ok(None),
     }

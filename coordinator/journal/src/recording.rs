@@ -4,10 +4,8 @@ use super::{
     index::Results,
     read::{JournalEntry, ReadReport, fold},
 };
-use protocol::{
-    event::{Event, Finished},
-    id::{ContentHash, JobId},
-};
+use crate::event::{Event, Finished};
+use protocol::id::{ContentHash, JobId};
 use std::path::Path;
 
 /// Snapshot of the results in a journal; records written later are not included.
@@ -69,7 +67,7 @@ impl JournalSnapshot {
 /// As [`fold`].
 pub fn numbers(path: &Path, mut given: impl FnMut(JobId, ContentHash)) -> Result<(), JournalError> {
     let report = fold(path, |_, event| match event {
-        Event::Asked { job, work } => given(job, work),
+        Event::Asked(asked) => given(asked.job, asked.work),
         // of a job whose question was lost to damage the answer is left
         Event::Finished(finished) => given(finished.job(), finished.work),
         Event::Begun { .. }
@@ -78,7 +76,8 @@ pub fn numbers(path: &Path, mut given: impl FnMut(JobId, ContentHash)) -> Result
         | Event::Left { .. }
         | Event::Closed
         | Event::Proved { .. }
-        | Event::Accounted(_) => {}
+        | Event::Accounted(_)
+        | Event::Found { .. } => {}
     });
     report.map(drop)
 }

@@ -1,5 +1,5 @@
 //! Differences between two runs, described in words.
-use protocol::event::RunHeader;
+use crate::event::RunHeader;
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 
