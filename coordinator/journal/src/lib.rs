@@ -14,6 +14,7 @@
 //! what a study found.
 pub mod account;
 mod differences;
+mod entries;
 mod error;
 pub mod event;
 mod follow;
@@ -30,6 +31,7 @@ mod sample;
 mod tests;
 mod write;
 
+pub use entries::StudyEntries;
 pub use error::JournalError;
 pub use follow::{Growth, JournalFollower};
 pub use open::{Journal, OpenedRun, discard};

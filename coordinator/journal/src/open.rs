@@ -1,6 +1,7 @@
 //! Opening or continuing a journal for writing.
 use super::{
     differences::differences,
+    entries::StudyEntries,
     error::JournalError,
     head,
     index::Results,
@@ -15,7 +16,7 @@ use protocol::{
     proof::ReferenceResult,
 };
 use std::{
-    collections::{BTreeMap, BTreeSet},
+    collections::BTreeSet,
     fs::{File, OpenOptions, TryLockError},
     io::{self, Seek, SeekFrom, Write},
     path::{Path, PathBuf},
@@ -46,6 +47,8 @@ pub struct OpenedRun {
     /// Workers connected when the last process ended without closing the run; they may still hold jobs and
     /// results.
     pub present: BTreeSet<WorkerId>,
+    /// Entries of the study, with those that earlier processes recorded.
+    pub entries: StudyEntries,
     /// Report on reading the journal: number of records, and damage found.
     pub report: ReadReport,
 }
@@ -55,8 +58,6 @@ pub struct OpenedRun {
 pub struct Journal {
     path: PathBuf,
     results: Results,
-    /// Entries of the study that earlier processes recorded, by number.
-    found: BTreeMap<u64, Vec<u8>>,
     to_writer: Option<mpsc::Sender<Event>>,
     writer: Option<thread::JoinHandle<()>>,
     closing: Arc<AtomicBool>,
@@ -130,11 +131,11 @@ impl Journal {
             model_digest: past.model_digest,
             proof: past.proof,
             present: past.present.into_keys().collect(),
+            entries: StudyEntries::new(&path, past.found),
             report,
         };
         let journal = Self {
             results: Results::new(&path, past.results)?,
-            found: past.found,
             path,
             to_writer: Some(to_writer),
             writer: Some(writer),
@@ -170,26 +171,6 @@ impl Journal {
             Ok(())
         } else {
             Err(JournalError::Closed)
-        }
-    }
-
-    /// Records an entry of the study under its number. One that an earlier process of the run recorded is compared
-    /// with it and not written twice.
-    ///
-    /// # Errors
-    /// [`JournalError::EntryDiffers`] if the recorded entry is another one, [`JournalError::Closed`] if the writing
-    /// thread has ended.
-    pub fn enter(&self, number: u64, entry: Vec<u8>) -> Result<(), JournalError> {
-        match self.found.get(&number) {
-            Some(recorded) if *recorded == entry => Ok(()),
-            Some(_) => Err(JournalError::EntryDiffers {
-                path: self.path.clone(),
-                number,
-            }),
-            None => self.append(Event::Found {
-                number,
-                entry: entry.into(),
-            }),
         }
     }
 

@@ -1,4 +1,5 @@
 //! Interface between a study and the evaluator of its jobs: submission, results, and worker status.
+use super::entry::Entry;
 use super::error::{EvaluatorError, StudyError};
 use super::job_number::JobNumbers;
 use dispatch::scheduler::Completed;
@@ -17,6 +18,14 @@ pub trait Evaluator {
     /// # Errors
     /// If the evaluator can no longer take jobs.
     fn submit(&mut self, id: JobId, job: Job, reason: JobReason) -> Result<(), EvaluatorError>;
+
+    /// Records what the study found or concluded. The default does nothing.
+    ///
+    /// # Errors
+    /// If an earlier session of the run recorded another entry, or the evaluator can no longer record.
+    fn enter(&mut self, _entry: &Entry) -> Result<(), EvaluatorError> {
+        Ok(())
+    }
 
     /// Replaces the jobs that the study will probably submit next, likeliest first; idle slots may compute them
     /// ahead. It has no effect on results. The default does nothing.

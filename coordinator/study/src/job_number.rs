@@ -32,6 +32,18 @@ pub(super) fn of_comparison(condition: usize, position: usize) -> u64 {
     COMPARISONS + ((condition as u64) << 9) + 2 * position as u64
 }
 
+/// Returns condition and position of the compared individual that a job scores or simulates; `None` for other jobs.
+pub(super) fn compared_individual(JobId(number): JobId) -> Option<(usize, usize)> {
+    let place = number.checked_sub(COMPARISONS)?;
+    let position = usize::try_from((place % 512) / 2).ok()?;
+    (number < IDENTIFIABILITY_JOBS).then_some((usize::try_from(place >> 9).ok()?, position))
+}
+
+/// Returns the number of the proposal that a job of a search evaluates; `None` for other jobs.
+pub(super) fn proposal_number(JobId(number): JobId) -> Option<u64> {
+    (number < COMPARISONS).then_some(number)
+}
+
 /// Number of bits of a hash that form a job number; every table format represents integers of this size
 /// exactly.
 const BITS: u32 = 48;

@@ -7,8 +7,10 @@
 //! order; what they return is a function of the case, the settings and the seed.
 mod batch;
 mod calibrate;
+mod calibration;
 mod compare;
 mod diagnose;
+mod entry;
 mod error;
 mod evaluate;
 mod evaluator;
@@ -30,9 +32,13 @@ mod watch;
 
 pub use batch::{run_batch, score_all};
 pub use calibrate::{Calibrated, calibrate};
+pub use calibration::{
+    CalibrationResult, RecordError, RecordedCalibration, calibrate_case, read_calibration,
+};
 pub use compare::{CompareRequest, Compared, ComparedCurves, PICTURES, compare};
 pub use diagnose::{DiagnosisResult, diagnose_on};
 pub use dispatch::scheduler::Completed;
+pub use entry::Entry;
 pub use error::{EvaluatorError, PROGRAM_REMEDY, StudyError};
 pub use evaluate::{EvaluationRequest, Scored, evaluate};
 pub use evaluator::answer;

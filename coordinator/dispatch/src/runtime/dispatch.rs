@@ -11,7 +11,7 @@ use super::{
     parts::Parts,
 };
 use crate::scheduler::{Completed, Snapshot};
-use journal::event::JobReason;
+use journal::{StudyEntries, event::JobReason};
 use link::{
     Blob, CoordinatorEnd,
     locator::Locator,
@@ -38,6 +38,7 @@ pub struct Dispatch {
     divisible: Vec<(JobId, Job, JobReason)>,
     /// Contents of the jobs anticipated last.
     anticipated: Vec<ContentHash>,
+    entries: StudyEntries,
     snapshot: Arc<Mutex<Snapshot>>,
     engine: JoinHandle<RunSummary>,
     listening: Vec<Locator>,
@@ -129,6 +130,7 @@ impl Dispatch {
         listening: Vec<Locator>,
     ) -> Self {
         let recorded = parts.journal.len();
+        let entries = parts.entries.clone();
         let (requests, asked) = unbounded_channel();
         let (deliver, completed) = unbounded_channel();
         let snapshot = Arc::new(Mutex::new(Snapshot::default()));
@@ -140,6 +142,7 @@ impl Dispatch {
             completed,
             divisible: Vec::new(),
             anticipated: Vec::new(),
+            entries,
             snapshot,
             engine,
             listening,
@@ -172,6 +175,20 @@ impl Dispatch {
         }
         let asked = Request::Submit(vec![(id, job, reason)]);
         self.requests.send(asked).map_err(|_| DispatchError::Closed)
+    }
+
+    /// Records the study's next entry: what it found or concluded. One that an earlier process of the run recorded is
+    /// compared with it and not written twice.
+    ///
+    /// # Errors
+    /// [`DispatchError::Journal`] if the recorded entry is another one, [`DispatchError::Closed`] once the run has been
+    /// stopped.
+    pub fn enter(&mut self, entry: Vec<u8>) -> Result<(), DispatchError> {
+        let Some(event) = self.entries.enter(entry)? else {
+            return Ok(());
+        };
+        let asked = self.requests.send(Request::Record(event));
+        asked.map_err(|_| DispatchError::Closed)
     }
 
     /// Replaces the jobs that the run will probably submit next, likeliest first. Slots that would be idle compute

@@ -50,6 +50,8 @@ pub(super) enum Request {
     Submit(Vec<(JobId, Job, JobReason)>),
     /// Replaces the jobs that the run will probably submit next, likeliest first.
     Anticipate(Vec<Job>),
+    /// Writes an event of the study to the journal.
+    Record(Event),
     /// Request that arrived on the control socket.
     Control(PendingRequest),
 }
@@ -147,6 +149,7 @@ impl<L: CoordinatorEnd> Engine<L> {
                 request = requests.recv() => match request {
                     Some(Request::Submit(jobs)) => self.submit(jobs),
                     Some(Request::Anticipate(jobs)) => self.anticipate(jobs),
+                    Some(Request::Record(event)) => self.record(event),
                     Some(Request::Control((question, to))) => {
                         let reply = self.ask(&question);
                         // who asked may not wait any more

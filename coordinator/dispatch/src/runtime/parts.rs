@@ -2,7 +2,7 @@
 //! journal.
 use super::{error::DispatchError, options::DispatchOptions};
 use crate::scheduler::{Core, CoreOptions, Policy};
-use journal::{Journal, WriterReport};
+use journal::{Journal, StudyEntries, WriterReport};
 use link::Blob;
 use protocol::{
     id::{RunId, draw},
@@ -19,6 +19,7 @@ pub(super) struct Parts {
     pub(super) run: RunId,
     pub(super) core: Core,
     pub(super) journal: Journal,
+    pub(super) entries: StudyEntries,
     pub(super) said: UnboundedReceiver<WriterReport>,
     pub(super) blob: Blob,
     pub(super) pause_limit: Duration,
@@ -74,6 +75,7 @@ impl Parts {
             run: begun.run,
             core,
             journal,
+            entries: begun.entries,
             said,
             blob,
             pause_limit: options.pause_limit,

@@ -1,6 +1,7 @@
 //! Families of fits: ends of descents with nearly equal fitness that differ in an unknown which the record
 //! determines.
 use crate::space::Space;
+use serde::{Deserialize, Serialize};
 
 /// Minimum distance of two families along an axis (coordinate): half a decade on a logarithmic axis, a
 /// quarter of the interval on a linear one.
@@ -11,7 +12,7 @@ const FAMILY_DISTANCE: f64 = 0.5;
 const RIVAL_FITNESS: f64 = 1.5;
 
 /// End of a least-squares descent.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct DescentEnd {
     /// Gene values at the end in declared units, in the case's order.
     pub genes: Vec<f64>,

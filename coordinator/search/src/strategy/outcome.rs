@@ -28,7 +28,7 @@ pub struct Progress {
 }
 
 /// Best individual found by a search.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Best {
     /// Id of the proposal by which the individual was evaluated.
     pub id: u64,

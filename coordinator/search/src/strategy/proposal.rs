@@ -37,6 +37,23 @@ pub enum Purpose {
 }
 
 impl Purpose {
+    /// All purposes.
+    const ALL: [Self; 8] = [
+        Self::Initial,
+        Self::Offspring,
+        Self::CrossoverTrial,
+        Self::MutationTrial,
+        Self::Scan,
+        Self::Refinement,
+        Self::LeastSquares,
+        Self::Derivatives,
+    ];
+
+    /// Returns the purpose of a name, as [`Self::as_str`] returns it.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|own| own.as_str() == name)
+    }
+
     /// Returns the name of the purpose as written in tables and files.
     pub const fn as_str(self) -> &'static str {
         match self {

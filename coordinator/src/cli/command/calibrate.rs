@@ -214,21 +214,20 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
             run.folder.path().display()
         ));
     }
-    let found = session.work(&run, async |bus, stop| {
+    session.work(&run, async |bus, stop| {
         let mut display = Display::new(run.case.objective_unit()).of_preset(&run.manifest.preset);
         display.resumed(bus.recorded());
         let found = calibrate(bus, &run, &mut display, stop).await;
         display.clear();
-        let found = found?;
-        let best = &found.calibrated.best.genes;
-        let seen = identifiability(bus, &run, best, &mut Silent, stop).await?;
+        let best = found?.calibrated.best.genes;
+        let seen = identifiability(bus, &run, &best, &mut Silent, stop).await?;
         let unknowns = seen.as_ref().map_or(&[][..], |seen| &seen.unknowns);
         run.folder.write_json(IDENTIFIABILITY, &unknowns)?;
         let kind = case::kind::of(&run.case);
         if let Some((name, bytes)) = seen.and_then(|seen| kind.jacobian_file(&run.case, &seen)) {
             run.folder.write(name, &bytes)?;
         }
-        Ok(found)
+        Ok(())
     })?;
-    show(&run, &found, session.wall_s(&run), arguments.output.output)
+    show(&run, session.wall_s(&run), arguments.output.output)
 }

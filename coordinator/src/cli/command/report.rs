@@ -1,7 +1,7 @@
 //! `horsehead report`: writes the files of a finished run again, from its journal.
 use crate::cli::{
     argument::output::OutputChoice,
-    output::{problem::EXIT_CODES, progress::Silent},
+    output::{calibration::show, problem::EXIT_CODES, progress::Silent},
     run::{bus, folder::RunFolder, interrupt, kind::AnyRun},
 };
 use clap::Args;
@@ -30,6 +30,9 @@ pub(super) struct Arguments {
 /// Replays the run from its journal and writes its report files.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let run = AnyRun::open(&arguments.run)?;
+    if let AnyRun::Calibration(run) = &run {
+        return show(run, run.manifest.wall_s, arguments.output.output);
+    }
     run.check_replayable()?;
     let recording = RunFolder::new(&arguments.run).recording()?;
     let mut unseen = |_: &Job, _: &Finished| Ok(());

@@ -9,14 +9,14 @@ use super::{
 use crate::cli::{
     argument::output::Output,
     run::{
-        calibration::{Calibration as Run, Found},
+        calibration::{Calibration as Run, recorded},
         folder::{GENES, IDENTIFIABILITY, RESULT},
         tables,
     },
 };
 use case::CaseEffect;
 use discrepancy::identify::UnknownEstimate;
-use journal::account::{self, JobCost};
+use journal::account::JobCost;
 use journal::event::WorkerAccount;
 use protocol::{
     case::WeightedCondition,
@@ -28,7 +28,9 @@ use search::strategy::{
     family::{Rival, rivals},
 };
 use std::collections::BTreeMap;
-use study::{self, Calibrated, Compared, ComparedCurves, LogEntry};
+use study::{
+    self, Calibrated, CalibrationResult, Compared, ComparedCurves, LogEntry, RecordedCalibration,
+};
 
 /// Converts the comparison of the recommended and the optimised individual under one condition to the
 /// report's type; `None` unless exactly these two were compared.
@@ -58,12 +60,14 @@ pub(crate) fn report_run(curves: &ComparedCurves) -> report::Run {
     }
 }
 
-/// Writes the result files of a finished calibration and prints its result.
+/// Reads the result of a finished calibration from its run folder, writes its files and prints it.
 ///
 /// # Errors
-/// If a file cannot be written.
-pub(crate) fn show(run: &Run, found: &Found, wall_s: f64, output: Output) -> anyhow::Result<()> {
-    let calibration = calibration(run, found, wall_s)?;
+/// As [`recorded`], and if a file cannot be written.
+pub(crate) fn show(run: &Run, wall_s: f64, output: Output) -> anyhow::Result<()> {
+    let recorded = recorded(run)?;
+    let calibration = calibration(run, &recorded, wall_s)?;
+    let found = &recorded.result;
     let folder = &run.folder;
     let about = format!(
         "Calibrated parameters of {}: preset {}, seed {}, log {}",
@@ -104,7 +108,7 @@ pub(crate) fn show(run: &Run, found: &Found, wall_s: f64, output: Output) -> any
 
 fn result_object<'a>(
     run: &'a Run,
-    found: &Found,
+    found: &CalibrationResult,
     wall_s: f64,
     files: Vec<String>,
 ) -> CalibrateOutput<'a> {
@@ -154,7 +158,7 @@ fn result_object<'a>(
 /// Sums the objective of each parameter set (recommended, optimised) over the calibrated conditions with their
 /// weights; null if
 /// the simulation of a condition failed.
-fn total_objective(run: &Run, found: &Found) -> RecommendedAndOptimised<Option<f64>> {
+fn total_objective(run: &Run, found: &CalibrationResult) -> RecommendedAndOptimised<Option<f64>> {
     let objective = &run.case.objective;
     let of = |which: usize| -> Option<f64> {
         let fitness = |one: WeightedCondition| {
@@ -172,10 +176,17 @@ fn total_objective(run: &Run, found: &Found) -> RecommendedAndOptimised<Option<f
 }
 
 /// Builds the data of a finished calibration's report.
-pub(crate) fn calibration(run: &Run, found: &Found, wall_s: f64) -> anyhow::Result<Calibration> {
+pub(crate) fn calibration(
+    run: &Run,
+    recorded: &RecordedCalibration,
+    wall_s: f64,
+) -> anyhow::Result<Calibration> {
     let case = &run.case;
-    // what workers of earlier sessions did is in the journal alone
-    let (account, costs) = account::read_with_costs(&run.folder.file(journal::FILE))?;
+    let RecordedCalibration {
+        result: found,
+        account,
+        costs,
+    } = recorded;
     let Calibrated {
         best, finish, log, ..
     } = &found.calibrated;
@@ -202,7 +213,7 @@ pub(crate) fn calibration(run: &Run, found: &Found, wall_s: f64) -> anyhow::Resu
         },
         history: history.collect(),
         workers: account.workers.iter().map(worker_use).collect(),
-        presence: account.presence,
+        presence: account.presence.clone(),
         spent: account.spent,
         wall_s,
         finish: match finish {

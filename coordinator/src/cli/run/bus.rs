@@ -13,7 +13,9 @@ use protocol::{
 };
 use serde::Serialize;
 use std::{collections::BTreeMap, path::PathBuf, time::Duration};
-use study::{Completed, Evaluator, EvaluatorError, JobNumbers, WorkerStatus, WorkersSnapshot};
+use study::{
+    Completed, Entry, Evaluator, EvaluatorError, JobNumbers, WorkerStatus, WorkersSnapshot,
+};
 
 /// Name and version of this program, as recorded in runs and exports.
 pub(crate) const PROGRAM: &str = concat!("horsehead ", env!("CARGO_PKG_VERSION"));
@@ -130,6 +132,14 @@ impl Evaluator for Bus {
         self.dispatch
             .submit(id, job, reason)
             .map_err(|error| explain(&error))
+    }
+
+    fn enter(&mut self, entry: &Entry) -> Result<(), EvaluatorError> {
+        let entry = wire::encode(entry).map_err(|error| EvaluatorError {
+            message: error.to_string(),
+            help: None,
+        })?;
+        self.dispatch.enter(entry).map_err(|error| explain(&error))
     }
 
     fn anticipate(&mut self, jobs: Vec<Job>) -> Result<(), EvaluatorError> {

@@ -1,7 +1,7 @@
 //! Determines the kind of a run (calibration, diagnosis or identification) from its run folder; no other
 //! module does so.
 use super::{
-    calibration::{self, Calibration, calibrate},
+    calibration::{Calibration, calibrate, recorded},
     diagnosis::{self, Diagnosis, diagnose},
     folder::{RESULT, RunFolder},
     identification::{self, Identification, identify},
@@ -33,7 +33,7 @@ pub(crate) enum AnyRun {
 
 /// Run together with its result, recomputed from its journal.
 pub(crate) enum ReplayedRun<'a> {
-    Calibration(&'a Calibration, calibration::Found),
+    Calibration(&'a Calibration),
     /// Diagnosis and its result, with the case and the measured records read again.
     Diagnosis(&'a Diagnosis, Box<Loaded>, Box<diagnosis::Found>),
     Identification(&'a Identification, Box<identification::Found>),
@@ -92,7 +92,8 @@ impl AnyRun {
     ) -> anyhow::Result<ReplayedRun<'_>> {
         Ok(match self {
             Self::Calibration(run) => {
-                ReplayedRun::Calibration(run, calibrate(evaluator, run, watch, stop).await?)
+                calibrate(evaluator, run, watch, stop).await?;
+                ReplayedRun::Calibration(run)
             }
             Self::Diagnosis(run) => {
                 let loaded = Box::new(run.loaded()?);
@@ -115,8 +116,8 @@ impl ReplayedRun<'_> {
     /// If the journal or the result of the run cannot be read.
     pub(crate) fn report(&self, wall_s: f64) -> anyhow::Result<Report> {
         Ok(match self {
-            Self::Calibration(run, found) => {
-                report::calibration(&calibration_data(run, found, wall_s)?)
+            Self::Calibration(run) => {
+                report::calibration(&calibration_data(run, &recorded(run)?, wall_s)?)
             }
             Self::Diagnosis(run, loaded, found) => {
                 let answer = DiagnosisOutput {
@@ -139,7 +140,7 @@ impl ReplayedRun<'_> {
     /// If a file cannot be written.
     pub(crate) fn write(self, output: Output) -> anyhow::Result<()> {
         match self {
-            Self::Calibration(run, found) => show(run, &found, run.manifest.wall_s, output),
+            Self::Calibration(run) => show(run, run.manifest.wall_s, output),
             Self::Diagnosis(run, loaded, mut found) => {
                 restore_times(run, &mut found)?;
                 let answer = DiagnosisOutput {

@@ -9,6 +9,7 @@ use case::{Loaded, Overrides, difference::differences, load_with_notes};
 use protocol::case::Case;
 use report::Origin;
 use std::path::{Path, PathBuf};
+use study::RecordError;
 
 /// Run of one kind; `S` is the type of the settings that, with case, seed and start, determine its result.
 #[derive(Clone, Debug)]
@@ -159,6 +160,43 @@ impl<S: RunIdentity> Run<S> {
             message,
             remedy: format!("{remedy}:\n  {}", self.resume_command()),
         })
+    }
+
+    /// Returns the path of the run's journal.
+    ///
+    /// # Errors
+    /// If the journal is missing or empty; the error gives the command that computes the run again.
+    pub(crate) fn expect_journal(&self) -> Result<PathBuf, Problem> {
+        if self.folder.has_journal() {
+            return Ok(self.folder.file(journal::FILE));
+        }
+        Err(Problem {
+            message: format!(
+                "the journal of {} is missing or empty",
+                self.folder.path().display()
+            ),
+            remedy: format!(
+                "restore the journal, or compute the run again:\n  {}",
+                self.resume_command()
+            ),
+        })
+    }
+
+    /// Returns the error for a run whose result its journal does not hold, with the command that resumes the run.
+    pub(crate) fn unreadable(&self, error: RecordError) -> anyhow::Error {
+        let (what, remedy) = match error {
+            RecordError::Journal(error) => return error.into(),
+            RecordError::Unfinished => ("is not finished", "resume the run first"),
+            RecordError::Incomplete => (
+                "cannot be shown: its journal lacks results",
+                "what is missing is computed again by the command of the run",
+            ),
+        };
+        Problem {
+            message: format!("{} {what}", self.folder.path().display()),
+            remedy: format!("{remedy}:\n  {}", self.resume_command()),
+        }
+        .into()
     }
 
     /// Writes the case and the manifest into the run folder, with the wall time spent so far (s).

@@ -6,6 +6,7 @@
 )]
 mod conditions;
 mod evaluate;
+mod finished;
 mod foreign_terms;
 mod identify;
 mod orthogonal;

@@ -9,12 +9,16 @@ use serde_json::Value;
 use std::{
     fs,
     io::Write as _,
+    os::unix::fs::symlink,
     path::{Path, PathBuf},
     process::{Child, Command, Stdio},
     thread,
     time::{Duration, Instant},
 };
 use tempfile::TempDir;
+
+/// Path of the worker program.
+const WORKER: &str = env!("CARGO_BIN_EXE_test-oscillator-worker");
 
 /// Temporary folder with the case.
 pub(crate) struct Rig(TempDir);
@@ -62,6 +66,7 @@ impl Rig {
     pub(crate) fn hiding(values: &Values, effects: &Effects, noise: u64) -> Self {
         let rig = Self(TempDir::new().unwrap());
         case_folder::write(&rig.file("case"), values, effects, noise).unwrap();
+        symlink(WORKER, rig.file("worker")).unwrap();
         rig
     }
 
@@ -78,8 +83,7 @@ impl Rig {
     /// Returns the `horsehead` command with these arguments (`CASE` stands for the case folder) and two
     /// oscillator workers.
     fn command(&self, words: &[&str]) -> Command {
-        let worker = Path::new(env!("CARGO_BIN_EXE_test-oscillator-worker"));
-        let mut command = Command::new(worker.with_file_name("horsehead"));
+        let mut command = Command::new(Path::new(WORKER).with_file_name("horsehead"));
         let case = self.path("case");
         command
             .args(
@@ -87,16 +91,21 @@ impl Rig {
                     .iter()
                     .map(|word| if *word == "CASE" { &case } else { *word }),
             )
-            .env("HORSEHEAD_WORKER", worker)
+            .env("HORSEHEAD_WORKER", self.file("worker"))
             .env("HORSEHEAD_WORKERS", "2")
             .current_dir(self.0.path());
         command
     }
 
+    /// Takes the worker program away from all further commands.
+    pub(crate) fn without_worker(&self) {
+        fs::remove_file(self.file("worker")).unwrap();
+    }
+
     /// Starts an oscillator worker with one slot that dials the coordinator at an address until it answers, and
     /// ends some seconds after the run.
     pub(crate) fn worker(&self, address: &str) -> Child {
-        Command::new(env!("CARGO_BIN_EXE_test-oscillator-worker"))
+        Command::new(WORKER)
             .args(["--connect", address, "--slots", "1", "--idle-timeout", "5"])
             .current_dir(self.0.path())
             .stdout(Stdio::null())

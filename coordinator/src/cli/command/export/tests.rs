@@ -13,11 +13,12 @@ use crate::cli::{
 use crate::read_back::{self, Tables, Value};
 use crate::test_evaluator::{TestEvaluator, case, physics};
 use journal::event::{Asked, Event, Finished, JobReason, RunHeader};
-use journal::{Journal, JournalEntry};
+use journal::{Journal, JournalEntry, StudyEntries};
 use protocol::{
     id::{AttemptId, ContentHash, JobId, RunId, WorkerId},
     job::{Answer, Job},
     message::{Attempt, Cost},
+    wire,
 };
 use search::{
     space::Space,
@@ -28,13 +29,16 @@ use std::{
     io::{Read as _, Seek as _, SeekFrom, Write as _},
     path::Path,
 };
-use study::{Completed, EvaluationLog, Evaluator, EvaluatorError, WorkersSnapshot};
+use study::{
+    CalibrationResult, Completed, Entry, EvaluationLog, Evaluator, EvaluatorError, WorkersSnapshot,
+};
 
 /// Evaluator that simulates with the test oracle and writes every result to a journal, as a run does; fails
 /// after `left` results, to imitate an interrupted run.
 struct JournalingEvaluator {
     oracle: TestEvaluator,
     journal: Journal,
+    entries: StudyEntries,
     jobs: BTreeMap<JobId, Job>,
     left: usize,
 }
@@ -45,6 +49,14 @@ impl Evaluator for JournalingEvaluator {
         self.journal.append(Event::Asked(Box::new(asked))).unwrap();
         self.jobs.insert(id, job.clone());
         self.oracle.submit(id, job, reason)
+    }
+
+    fn enter(&mut self, entry: &Entry) -> Result<(), EvaluatorError> {
+        let event = self.entries.enter(wire::encode(entry).unwrap()).unwrap();
+        if let Some(event) = event {
+            self.journal.append(event).unwrap();
+        }
+        Ok(())
     }
 
     async fn next(&mut self) -> Result<Completed, EvaluatorError> {
@@ -81,8 +93,8 @@ impl Evaluator for JournalingEvaluator {
 }
 
 /// Calibrates with a [`JournalingEvaluator`] until the journal holds the given number of results; returns the
-/// evaluation log if the run finished.
-fn run_with(folder: &Path, results: usize) -> (JournalingEvaluator, Option<EvaluationLog>) {
+/// result if the run finished.
+fn run_with(folder: &Path, results: usize) -> (JournalingEvaluator, Option<CalibrationResult>) {
     let case = case();
     let space = Space::new(&case.unknowns).unwrap();
     let manifest = Manifest {
@@ -113,10 +125,11 @@ fn run_with(folder: &Path, results: usize) -> (JournalingEvaluator, Option<Evalu
         case: ContentHash::of(b"case"),
         settings: run.manifest.settings_json().unwrap(),
     };
-    let (journal, _) = Journal::open(folder, &header, RunId(1), 5, |_| {}).unwrap();
+    let (journal, begun) = Journal::open(folder, &header, RunId(1), 5, |_| {}).unwrap();
     let mut scribe = JournalingEvaluator {
         oracle: TestEvaluator::new(&run.case, 11, physics),
         journal,
+        entries: begun.entries,
         jobs: BTreeMap::new(),
         left: results,
     };
@@ -124,7 +137,7 @@ fn run_with(folder: &Path, results: usize) -> (JournalingEvaluator, Option<Evalu
         let mut stop = tokio::sync::watch::channel(false).1;
         calibrate(&mut scribe, &run, &mut Silent, &mut stop).await
     });
-    (scribe, found.ok().map(|found| found.calibrated.log))
+    (scribe, found.ok())
 }
 
 fn arguments(run: &Path, format: Form, to: Option<&Path>) -> Arguments {
@@ -203,9 +216,12 @@ fn expect_log(tables: &Tables, log: &EvaluationLog) {
 fn three_forms_hold_what_the_search_saw_and_leave_no_trace() {
     let scratch = tempfile::tempdir().unwrap();
     let folder = scratch.path().join("run");
-    let (scribe, log) = run_with(&folder, usize::MAX);
+    let (scribe, found) = run_with(&folder, usize::MAX);
     drop(scribe);
-    let (log, before) = (log.unwrap(), fs::read(folder.join(journal::FILE)).unwrap());
+    let (log, before) = (
+        found.unwrap().calibrated.log,
+        fs::read(folder.join(journal::FILE)).unwrap(),
+    );
     let mut all = Vec::new();
     for form in [Form::Sqlite, Form::Csv, Form::Parquet] {
         let made = export(&arguments(&folder, form, None)).unwrap();
@@ -257,7 +273,7 @@ fn three_forms_hold_what_the_search_saw_and_leave_no_trace() {
 fn the_query_of_the_manual_finds_the_best_individuals() {
     let scratch = tempfile::tempdir().unwrap();
     let folder = scratch.path().join("run");
-    let (_, log) = run_with(&folder, usize::MAX);
+    let (_, found) = run_with(&folder, usize::MAX);
     export(&arguments(&folder, Form::Sqlite, None)).unwrap();
     let manual = include_str!("../../../../../docs/calibrate.md");
     let (_, behind) = manual.split_once("run.sqlite \"").unwrap();
@@ -269,7 +285,7 @@ fn the_query_of_the_manual_finds_the_best_individuals() {
     while let Some(row) = rows.next().unwrap() {
         best.push(row.get::<_, f64>("fitness_mpa2").unwrap());
     }
-    let log = log.unwrap();
+    let log = found.unwrap().calibrated.log;
     let complete = log
         .entries()
         .filter(|entry| entry.ending == study::EvaluationOutcome::Complete);
@@ -283,8 +299,8 @@ fn the_query_of_the_manual_finds_the_best_individuals() {
 fn a_run_that_goes_on_is_exported_as_far_as_it_got() {
     let scratch = tempfile::tempdir().unwrap();
     let folder = scratch.path().join("run");
-    let (mut scribe, log) = run_with(&folder, 300);
-    assert!(log.is_none());
+    let (mut scribe, found) = run_with(&folder, 300);
+    assert!(found.is_none());
     // its coordinator is alive: it holds the lock and is in the middle of a record
     scribe.journal.close();
     let path = folder.join(journal::FILE);
@@ -377,4 +393,37 @@ fn the_manifest_decides_nothing_about_results() {
     manifest["settings"] = "of another version".into();
     fs::write(&file, manifest.to_string()).unwrap();
     assert_eq!(results(), before);
+}
+
+/// Checks that the journal states the result of a calibration, and that one without its conclusion, or without a result
+/// that the search used, is refused.
+#[test]
+fn a_calibration_is_read_as_it_was_found() {
+    let scratch = tempfile::tempdir().unwrap();
+    let folder = scratch.path().join("run");
+    let (scribe, found) = run_with(&folder, usize::MAX);
+    drop(scribe);
+    let path = folder.join(journal::FILE);
+    let read = study::read_calibration(&path, &case()).unwrap();
+    assert_eq!(Some(read.result), found);
+    assert_eq!(read.costs.len(), results(&folder).len());
+
+    let bytes = fs::read(&path).unwrap();
+    let (entry, _) = results(&folder)[100];
+    let mut damaged = bytes;
+    damaged[usize::try_from(entry.at).unwrap()] ^= 1;
+    fs::write(&path, damaged).unwrap();
+    let refused = study::read_calibration(&path, &case()).unwrap_err();
+    assert!(
+        matches!(refused, study::RecordError::Incomplete),
+        "{refused}"
+    );
+
+    let unfinished = scratch.path().join("unfinished");
+    drop(run_with(&unfinished, 300));
+    let refused = study::read_calibration(&unfinished.join(journal::FILE), &case()).unwrap_err();
+    assert!(
+        matches!(refused, study::RecordError::Unfinished),
+        "{refused}"
+    );
 }

@@ -1,0 +1,258 @@
+//! Whole calibration: the recommended individual, the search, and the comparison of both individuals; and the same
+//! result read from a journal.
+use super::{
+    calibrate::{Calibrated, calibrate, entry},
+    compare::{CompareRequest, Compared, ComparedCurves, PICTURES, compare},
+    entry::Entry,
+    error::StudyError,
+    evaluator::Evaluator,
+    job_number::{compared_individual, proposal_number},
+    log::EvaluationLog,
+    mismatch::{mismatches, recommended},
+    progress::ProgressView,
+    stop::Stop,
+    watch::Watch,
+};
+use journal::{
+    JournalError,
+    account::{AccountBuilder, Costs, JobCost, RunAccount},
+    event::{Asked, Event, Finished},
+};
+use protocol::{
+    case::Case,
+    id::JobId,
+    job::{Curves, Evaluation, Outcome},
+    wire,
+};
+use search::strategy::{Proposal, Purpose, Strategy};
+use std::{collections::BTreeMap, path::Path};
+
+/// Names of the compared individuals, in the order in which they are compared.
+const COMPARED: [&str; 2] = ["recommended", "optimised"];
+
+/// Result of a whole calibration.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CalibrationResult {
+    /// Best individual and evaluation log of the search.
+    pub calibrated: Calibrated,
+    /// Comparisons of the recommended and the best individual, the calibrated condition first.
+    pub compared: Vec<Compared>,
+    /// Notes about records that do not fit their channels.
+    pub notes: Vec<String>,
+}
+
+/// Simulates the recommended individual, runs the search, and compares the recommended with the best individual; enters
+/// notes and result.
+///
+/// # Errors
+/// As [`calibrate()`] and [`compare()`].
+pub async fn calibrate_case<E: Evaluator>(
+    evaluator: &mut E,
+    case: &Case,
+    strategy: &mut dyn Strategy,
+    watch: &mut dyn Watch<ProgressView>,
+    stop: &mut Stop,
+) -> Result<CalibrationResult, StudyError> {
+    let wanted = recommended(case, PICTURES);
+    // workers may be long in coming
+    let mut view = ProgressView::default();
+    view.plan(&strategy.progress());
+    watch.progress(&view, &|| evaluator.workers_status());
+    let first = match compare(evaluator, case, &wanted, stop).await {
+        // others may do better; without a comparison there is no report
+        Err(error @ StudyError::Unavailable { .. }) => Err(error),
+        other => Ok(other?),
+    };
+    let notes = first.as_ref().map(|all| mismatches(case, &[], all));
+    let notes = notes.unwrap_or_default();
+    watch.noted(&notes);
+    evaluator.enter(&Entry::Noted(notes.clone()))?;
+    let calibrated = calibrate(evaluator, case, strategy, watch, stop).await?;
+    let first = first?;
+    let best = |one: CompareRequest| CompareRequest {
+        first: 1,
+        individuals: vec![(COMPARED[1].to_owned(), calibrated.best.genes.clone())],
+        ..one
+    };
+    let wanted: Vec<CompareRequest> = wanted.into_iter().map(best).collect();
+    let optimised = compare(evaluator, case, &wanted, stop).await?;
+    let both = first.into_iter().zip(optimised);
+    let both = both.map(|(mut recommended, optimised)| {
+        recommended.individuals.extend(optimised.individuals);
+        recommended
+    });
+    evaluator.enter(&Entry::Calibrated {
+        best: calibrated.best.clone(),
+        finish: calibrated.finish,
+        descent_ends: calibrated.descent_ends.clone(),
+        digest: calibrated.log.digest(),
+    })?;
+    Ok(CalibrationResult {
+        calibrated,
+        compared: both.collect(),
+        notes,
+    })
+}
+
+/// Reason why the result of a run cannot be read from its journal.
+#[derive(Debug, thiserror::Error)]
+pub enum RecordError {
+    /// The journal cannot be read.
+    #[error(transparent)]
+    Journal(#[from] JournalError),
+    /// The study has not reached its end.
+    #[error("the run has not been finished")]
+    Unfinished,
+    /// Results that the study used are missing, because the journal is damaged.
+    #[error("results of the run are missing in its journal, which is damaged")]
+    Incomplete,
+}
+
+/// Calibration as its journal states it: its result, and what it took.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RecordedCalibration {
+    /// Result of the calibration.
+    pub result: CalibrationResult,
+    /// Use of the workers over all processes of the run.
+    pub account: RunAccount,
+    /// Cost of each job.
+    pub costs: Costs,
+}
+
+/// Reads a finished calibration of a case from its journal. Nothing is simulated or searched.
+///
+/// # Errors
+/// [`RecordError`] if the journal cannot be read, the calibration has not been finished, or results are missing.
+pub fn read_calibration(path: &Path, case: &Case) -> Result<RecordedCalibration, RecordError> {
+    let mut reading = CalibrationReader::default();
+    let (mut account, mut costs) = (AccountBuilder::default(), Costs::new());
+    let report = journal::fold(path, |_, event| {
+        account.apply(&event);
+        match event {
+            Event::Asked(asked) => {
+                reading.asked.entry(asked.job).or_insert(*asked);
+            }
+            Event::Finished(finished) => {
+                costs.insert(finished.job().0, JobCost::of(&finished));
+                reading.finish(*finished);
+            }
+            Event::Found { number, entry } => {
+                if let Ok(entry) = wire::decode(&entry) {
+                    reading.entries.entry(number).or_insert(entry);
+                }
+            }
+            Event::Begun { .. }
+            | Event::Opened { .. }
+            | Event::Joined { .. }
+            | Event::Left { .. }
+            | Event::Closed
+            | Event::Proved { .. }
+            | Event::Accounted(_) => {}
+        }
+    })?;
+    Ok(RecordedCalibration {
+        result: reading.result(case)?,
+        account: account.finish(report.damage),
+        costs,
+    })
+}
+
+/// Fold of a calibration's events.
+#[derive(Default)]
+struct CalibrationReader {
+    /// Requests without a result so far.
+    asked: BTreeMap<JobId, Asked>,
+    log: EvaluationLog,
+    /// Scores and curves of compared individuals by condition and position.
+    scores: BTreeMap<(usize, usize), Evaluation>,
+    curves: BTreeMap<(usize, usize), (Vec<f64>, Curves)>,
+    entries: BTreeMap<u64, Entry>,
+}
+
+impl CalibrationReader {
+    /// Takes the first result of a job whose request was read; without residual, which only the search needs.
+    fn finish(&mut self, finished: Finished) {
+        let id = finished.job();
+        let Some(asked) = self.asked.remove(&id) else {
+            return;
+        };
+        let genes = asked.individual.map(|own| own.genes).unwrap_or_default();
+        if let Some(place) = compared_individual(id) {
+            let Outcome::Done(answer) = finished.outcome else {
+                return;
+            };
+            if answer.evaluation().is_some() {
+                self.scores
+                    .extend(answer.into_scored().ok().map(|own| (place, own)));
+            } else if let Ok(curves) = answer.into_curves() {
+                self.curves.insert(place, (genes, *curves));
+            }
+        } else if let Some((id, purpose)) =
+            proposal_number(id).zip(Purpose::named(&asked.reason.purpose))
+        {
+            let proposal = Proposal {
+                id,
+                genes,
+                generation: asked.reason.generation.unwrap_or_default(),
+                purpose,
+            };
+            // a failure that ends a study is not followed by a conclusion
+            if let Ok(entry) = entry(proposal, finished.outcome) {
+                self.log.insert(entry);
+            }
+        }
+    }
+
+    fn result(self, case: &Case) -> Result<CalibrationResult, RecordError> {
+        let mut all_notes = Vec::new();
+        let mut concluded = None;
+        for entry in self.entries.into_values() {
+            match entry {
+                Entry::Noted(notes) => all_notes.extend(notes),
+                Entry::Calibrated {
+                    best,
+                    finish,
+                    descent_ends,
+                    digest,
+                } => concluded = Some((best, finish, descent_ends, digest)),
+            }
+        }
+        let (best, finish, descent_ends, digest) = concluded.ok_or(RecordError::Unfinished)?;
+        if self.log.digest() != digest {
+            return Err(RecordError::Incomplete);
+        }
+        let (mut scores, mut curves) = (self.scores, self.curves);
+        let mut compared = Vec::new();
+        for CompareRequest { condition, .. } in recommended(case, 0) {
+            let mut individuals = Vec::new();
+            for (position, name) in COMPARED.into_iter().enumerate() {
+                let place = (condition, position);
+                let (genes, drawn) = curves.remove(&place).ok_or(RecordError::Incomplete)?;
+                let evaluation = scores.remove(&place);
+                if evaluation.is_none() && case.is_measured(condition) {
+                    return Err(RecordError::Incomplete);
+                }
+                individuals.push(ComparedCurves {
+                    name: name.to_owned(),
+                    genes,
+                    evaluation,
+                    drawn,
+                });
+            }
+            compared.push(Compared {
+                condition,
+                individuals,
+            });
+        }
+        Ok(CalibrationResult {
+            calibrated: Calibrated {
+                best,
+                finish,
+                descent_ends,
+                log: self.log,
+            },
+            compared,
+            notes: all_notes,
+        })
+    }
+}
