@@ -37,7 +37,7 @@ const ARROWS: &[(&str, &str)] = &[
     ("report", "journal"),
     ("report", "study"),
     ("report", "support"),
-    // its tests fit a model
+    // values of coordinates of a search space
     ("report", "search"),
     ("store", "protocol"),
     ("store", "journal"),

@@ -1,9 +1,10 @@
 //! Interface to the simulation of batches of points.
 use crate::record::measured::{Curves, Record, Recorded};
 use protocol::job::{Observation, SimulateSpec, Verdict};
+use serde::{Deserialize, Serialize};
 
 /// Stage of a diagnosis, for progress reports, timing and budgets.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Stage {
     /// Global search for the narrow minimum in which resonances fit.
     Basin,

@@ -1,8 +1,8 @@
 //! Verdict of a diagnosis as a total function of the results of its tests.
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Verdict of a diagnosis.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
     /// No test rejects: the residual is noise, down to the detection limits.

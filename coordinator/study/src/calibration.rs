@@ -10,11 +10,11 @@ use super::{
     log::EvaluationLog,
     mismatch::{mismatches, recommended},
     progress::ProgressView,
+    recorded::{RecordError, read_entries},
     stop::Stop,
     watch::Watch,
 };
 use journal::{
-    JournalError,
     account::{AccountBuilder, Costs, JobCost, RunAccount},
     event::{Asked, Event, Finished},
 };
@@ -22,7 +22,6 @@ use protocol::{
     case::Case,
     id::JobId,
     job::{Curves, Evaluation, Outcome},
-    wire,
 };
 use search::strategy::{Proposal, Purpose, Strategy};
 use std::{collections::BTreeMap, path::Path};
@@ -94,20 +93,6 @@ pub async fn calibrate_case<E: Evaluator>(
     })
 }
 
-/// Reason why the result of a run cannot be read from its journal.
-#[derive(Debug, thiserror::Error)]
-pub enum RecordError {
-    /// The journal cannot be read.
-    #[error(transparent)]
-    Journal(#[from] JournalError),
-    /// The study has not reached its end.
-    #[error("the run has not been finished")]
-    Unfinished,
-    /// Results that the study used are missing, because the journal is damaged.
-    #[error("results of the run are missing in its journal, which is damaged")]
-    Incomplete,
-}
-
 /// Calibration as its journal states it: its result, and what it took.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordedCalibration {
@@ -126,7 +111,7 @@ pub struct RecordedCalibration {
 pub fn read_calibration(path: &Path, case: &Case) -> Result<RecordedCalibration, RecordError> {
     let mut reading = CalibrationReader::default();
     let (mut account, mut costs) = (AccountBuilder::default(), Costs::new());
-    let report = journal::fold(path, |_, event| {
+    let entries = read_entries(path, |event| {
         account.apply(&event);
         match event {
             Event::Asked(asked) => {
@@ -136,23 +121,19 @@ pub fn read_calibration(path: &Path, case: &Case) -> Result<RecordedCalibration,
                 costs.insert(finished.job().0, JobCost::of(&finished));
                 reading.finish(*finished);
             }
-            Event::Found { number, entry } => {
-                if let Ok(entry) = wire::decode(&entry) {
-                    reading.entries.entry(number).or_insert(entry);
-                }
-            }
             Event::Begun { .. }
             | Event::Opened { .. }
             | Event::Joined { .. }
             | Event::Left { .. }
             | Event::Closed
             | Event::Proved { .. }
-            | Event::Accounted(_) => {}
+            | Event::Accounted(_)
+            | Event::Found { .. } => {}
         }
     })?;
     Ok(RecordedCalibration {
-        result: reading.result(case)?,
-        account: account.finish(report.damage),
+        result: reading.result(case, entries)?,
+        account: account.finish(Vec::new()),
         costs,
     })
 }
@@ -166,7 +147,6 @@ struct CalibrationReader {
     /// Scores and curves of compared individuals by condition and position.
     scores: BTreeMap<(usize, usize), Evaluation>,
     curves: BTreeMap<(usize, usize), (Vec<f64>, Curves)>,
-    entries: BTreeMap<u64, Entry>,
 }
 
 impl CalibrationReader {
@@ -203,10 +183,10 @@ impl CalibrationReader {
         }
     }
 
-    fn result(self, case: &Case) -> Result<CalibrationResult, RecordError> {
+    fn result(self, case: &Case, entries: Vec<Entry>) -> Result<CalibrationResult, RecordError> {
         let mut all_notes = Vec::new();
         let mut concluded = None;
-        for entry in self.entries.into_values() {
+        for entry in entries {
             match entry {
                 Entry::Noted(notes) => all_notes.extend(notes),
                 Entry::Calibrated {
@@ -215,6 +195,7 @@ impl CalibrationReader {
                     descent_ends,
                     digest,
                 } => concluded = Some((best, finish, descent_ends, digest)),
+                Entry::Records(_) | Entry::Diagnosed(_) | Entry::Identified(_) => {}
             }
         }
         let (best, finish, descent_ends, digest) = concluded.ok_or(RecordError::Unfinished)?;

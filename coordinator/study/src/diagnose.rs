@@ -1,27 +1,20 @@
 //! Runner of the diagnosis of model deficiencies; its experiments are simulations submitted as jobs to an
 //! evaluator.
 use super::{
+    entry::DiagnosisResult,
     error::StudyError,
     evaluator::Evaluator,
-    experiments::{Jobs, StageCost, StageView},
+    experiments::{Jobs, StageView},
     job_number::EXPERIMENTS,
     stop::Stop,
     watch::Watch,
 };
-use discrepancy::diagnose::{Diagnosis, Inputs, diagnose};
+use discrepancy::diagnose::{Inputs, diagnose};
 use discrepancy::laboratory::Stage;
+use discrepancy::model::InactiveUnknowns;
 
-/// Result of a diagnosis of model deficiencies, and the cost of its experiments.
-#[derive(Clone, Debug)]
-pub struct DiagnosisResult {
-    /// Findings of the diagnosis: possible model deficiencies and how well each explains the measured
-    /// records.
-    pub diagnosis: Diagnosis,
-    /// Cost of the diagnosis (experiments, batches, wall time) by stage, for stages that ran experiments.
-    pub accounts: Vec<(Stage, StageCost)>,
-}
-
-/// Runs a diagnosis of model deficiencies, with an evaluator that computes its simulations.
+/// Runs a diagnosis of model deficiencies, with an evaluator that computes its simulations; the notes of the result
+/// are empty.
 ///
 /// # Errors
 /// If the workers cannot build the case or an effect, no evaluator is left, or the user stops.
@@ -33,8 +26,12 @@ pub async fn diagnose_on<E: Evaluator>(
 ) -> Result<DiagnosisResult, StudyError> {
     let mut jobs = Jobs::new((evaluator, EXPERIMENTS), inputs, &Stage::ALL, watch, stop);
     let diagnosis = diagnose(&mut jobs, inputs).await?;
+    let off = InactiveUnknowns::of(&inputs.unknowns).into_iter();
+    let off = off.map(|off| off.candidate);
     Ok(DiagnosisResult {
         diagnosis,
         accounts: jobs.accounts(),
+        library: inputs.library.iter().cloned().chain(off).collect(),
+        notes: Vec::new(),
     })
 }

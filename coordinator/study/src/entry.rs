@@ -1,11 +1,17 @@
 //! Entries of a study in its journal: what it found and concluded, as plain data.
+use discrepancy::{
+    diagnose::Diagnosis, identify::IdentificationResult, laboratory::Stage, record::Record,
+};
+use protocol::announce::EffectDescriptor;
 use search::strategy::{Best, DescentEnd, Finish};
 use serde::{Deserialize, Serialize};
 
 /// Entry of a study. It holds no times and does not depend on the order in which results arrive, so that a resumed study
 /// makes the same entries again. The form of entries belongs to the journal's version ([`journal::VERSION`]).
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub enum Entry {
+    /// Measured records that the study uses, cycle by cycle.
+    Records(Vec<Record>),
     /// Notes about the case and its records, one sentence each.
     Noted(Vec<String>),
     /// Result of the search of a calibration; its evaluations are the recorded jobs.
@@ -19,4 +25,46 @@ pub enum Entry {
         /// Digest of the evaluation log.
         digest: String,
     },
+    /// Result of a diagnosis.
+    Diagnosed(Box<DiagnosisResult>),
+    /// Result of an identification.
+    Identified(Box<IdentificationStudy>),
+}
+
+/// Result of a diagnosis of model deficiencies, with what it considered and the cost of its experiments.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct DiagnosisResult {
+    /// Findings of the diagnosis: possible model deficiencies and how well each explains the measured
+    /// records.
+    pub diagnosis: Diagnosis,
+    /// Cost of the diagnosis by stage, for stages that ran experiments.
+    pub accounts: Vec<(Stage, StageCost)>,
+    /// Candidate effects: those known to the workers but absent from the case, and unknowns of the case that are
+    /// switched off.
+    pub library: Vec<EffectDescriptor>,
+    /// Notes about the case, its records and its numerical settings, one sentence each.
+    pub notes: Vec<String>,
+}
+
+/// Result of an identification of unknowns, and the number of its experiments.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct IdentificationStudy {
+    /// Unknowns that the measured record determines, with their values.
+    pub identified: IdentificationResult,
+    /// Number of simulations.
+    pub simulations: u64,
+    /// Notes about the case and its records, one sentence each.
+    pub notes: Vec<String>,
+}
+
+/// Cost so far of one stage of a diagnosis or identification.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct StageCost {
+    /// Number of the stage's completed experiments (simulations).
+    pub experiments: u64,
+    /// Number of the stage's experiments whose simulation failed or ended early.
+    pub failed: u64,
+    /// Number of batches of experiments that the stage ran one after another; experiments of one batch are
+    /// independent.
+    pub batches: u64,
 }

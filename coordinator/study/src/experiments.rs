@@ -4,6 +4,7 @@
 //! resumed run therefore finds all of them in its journal.
 use super::{
     batch::run_batch,
+    entry::StageCost,
     error::StudyError,
     evaluator::{Evaluator, answer},
     job_number::LIBRARY,
@@ -20,21 +21,6 @@ use protocol::{
     job::{Answer, Job, Observation, SimulateSpec, Verdict},
 };
 use std::collections::BTreeMap;
-use std::time::{Duration, Instant};
-
-/// Cost so far of one stage of a diagnosis or identification.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct StageCost {
-    /// Number of the stage's completed experiments (simulations).
-    pub experiments: u64,
-    /// Number of the stage's experiments whose simulation failed or ended early.
-    pub failed: u64,
-    /// Number of batches of experiments that the stage ran one after another; experiments of one batch are
-    /// independent.
-    pub batches: u64,
-    /// Wall time of all batches of the stage, including waiting.
-    pub wall: Duration,
-}
 
 /// Progress of the current stage of a diagnosis or identification.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -136,7 +122,6 @@ impl<E: Evaluator> Laboratory for Jobs<'_, E> {
         stage: Stage,
         batch: Vec<SimulateSpec>,
     ) -> Result<Vec<Option<Observation>>, StudyError> {
-        let started = Instant::now();
         let mut results: Vec<Option<Observation>> = vec![None; batch.len()];
         let mut open = batch.len();
         let prices: Vec<f64> = batch.iter().map(cost).collect();
@@ -197,7 +182,6 @@ impl<E: Evaluator> Laboratory for Jobs<'_, E> {
         .await?;
         let cost = self.costs.entry(stage).or_default();
         cost.batches += u64::from(!results.is_empty());
-        cost.wall += started.elapsed();
         Ok(results)
     }
 }

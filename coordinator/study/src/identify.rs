@@ -1,27 +1,18 @@
 //! Runner of an identification, which finds the unknowns that a measured record determines; its experiments
 //! are simulations submitted as jobs to an evaluator.
 use super::{
+    entry::IdentificationStudy,
     error::StudyError,
     evaluator::Evaluator,
-    experiments::{Jobs, StageCost, StageView},
+    experiments::{Jobs, StageView},
     job_number::{EXPERIMENTS, IDENTIFIABILITY_JOBS},
     stop::Stop,
     watch::Watch,
 };
 use discrepancy::diagnose::Inputs;
-use discrepancy::identify::{IdentificationResult, LinearEstimate, identify, linear_estimate};
+use discrepancy::identify::{LinearEstimate, identify, linear_estimate};
 use discrepancy::laboratory::Stage;
 use protocol::case::{Case, Channel};
-
-/// Result of an identification of unknowns, and the cost of its experiments.
-#[derive(Clone, Debug)]
-pub struct IdentifiedOn {
-    /// Unknowns that the measured record determines, with their values; none where no fit completes.
-    pub identified: Option<IdentificationResult>,
-    /// Cost of the identification (experiments, batches, wall time) by stage, for stages that ran
-    /// experiments.
-    pub accounts: Vec<(Stage, StageCost)>,
-}
 
 /// Stages through which an identification may pass, in order.
 const STAGES: [Stage; 5] = [
@@ -33,7 +24,7 @@ const STAGES: [Stage; 5] = [
 ];
 
 /// Runs an identification of the unknowns that the measured record determines, with an evaluator that
-/// computes its simulations.
+/// computes its simulations; `None` where no fit completes. The notes of the result are empty.
 ///
 /// # Errors
 /// If the workers cannot build the case, no evaluator is left, or the user stops.
@@ -43,7 +34,7 @@ pub async fn identify_on<E: Evaluator>(
     inputs: &Inputs,
     watch: &mut dyn Watch<StageView>,
     stop: &mut Stop,
-) -> Result<IdentifiedOn, StudyError> {
+) -> Result<Option<IdentificationStudy>, StudyError> {
     let of = |condition: usize| -> Vec<Channel> {
         let channels = case.channels_of(condition);
         channels.map(|(_, channel)| channel.clone()).collect()
@@ -51,10 +42,13 @@ pub async fn identify_on<E: Evaluator>(
     let conditions: Vec<Vec<Channel>> = (0..case.conditions.len()).map(of).collect();
     let mut jobs = Jobs::new((evaluator, EXPERIMENTS), inputs, &STAGES, watch, stop);
     let identified = identify(&mut jobs, inputs, &conditions).await?;
-    Ok(IdentifiedOn {
+    let accounts = jobs.accounts();
+    let simulations = accounts.iter().map(|(_, cost)| cost.experiments).sum();
+    Ok(identified.map(|identified| IdentificationStudy {
         identified,
-        accounts: jobs.accounts(),
-    })
+        simulations,
+        notes: Vec::new(),
+    }))
 }
 
 /// Estimates at the start values, to first order, how well a measured record determines each unknown; none where no

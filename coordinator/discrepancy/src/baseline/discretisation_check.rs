@@ -13,9 +13,10 @@ use crate::record::spectrum::Spectra;
 use crate::record::whitened::WhitenedRecord;
 use nalgebra::DVector;
 use protocol::job::Numerics;
+use serde::{Deserialize, Serialize};
 
 /// Difference between the curves of a model and those of a finer discretisation of it.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Preflight {
     /// Difference of the curves, finer less coarser, by channel.
     pub difference: Curves,

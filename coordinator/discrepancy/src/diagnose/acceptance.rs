@@ -2,12 +2,12 @@
 //! checked against a finer model.
 use crate::baseline::recheck::{Checked, check_against_finer};
 use crate::baseline::session::Session;
-use crate::diagnose::diagnosis::Diagnosis;
+use crate::diagnose::diagnosis::WorkingDiagnosis;
 use crate::estimate::force::force;
 use crate::hypothesis::decide::{decide, decide_joint};
 use crate::hypothesis::generic_force::{Challenger, challenge};
 use crate::hypothesis::joint_refit::{JointRefit, joint_refits};
-use crate::hypothesis::round::Round;
+use crate::hypothesis::round::WorkingRound;
 use crate::laboratory::{Laboratory, Stage};
 use crate::model::fit::Fit;
 use crate::record::metric::Metric;
@@ -18,7 +18,7 @@ pub(crate) struct Accepted {
     /// Fit with the accepted effects, from which the next round starts.
     pub(crate) fit: Fit,
     /// Copies of the round, one for each further effect that was accepted together with the first.
-    pub(crate) further_rounds: Vec<Round>,
+    pub(crate) further_rounds: Vec<WorkingRound>,
 }
 
 /// Returns the next model if the best effects of a round are accepted; otherwise records the reason in the
@@ -26,8 +26,8 @@ pub(crate) struct Accepted {
 pub(crate) async fn accept<L: Laboratory>(
     session: &mut Session<'_, L>,
     current: &Fit,
-    round: &mut Round,
-    diagnosis: &mut Diagnosis,
+    round: &mut WorkingRound,
+    diagnosis: &mut WorkingDiagnosis,
 ) -> Result<Option<Accepted>, L::Error> {
     let (base, thresholds) = (session.base, &session.inputs.thresholds);
     let challenger = challenge(session, current, round).await?;
@@ -76,7 +76,7 @@ pub(crate) async fn accept<L: Laboratory>(
 async fn likeliest_together<L: Laboratory>(
     session: &mut Session<'_, L>,
     current: &Fit,
-    round: &Round,
+    round: &WorkingRound,
     challenged: bool,
 ) -> Result<Option<JointRefit>, L::Error> {
     let thresholds = &session.inputs.thresholds;
@@ -110,7 +110,7 @@ async fn doubt_by_finer_model<L: Laboratory>(
     before: &Fit,
     after: &Fit,
     id: &str,
-    diagnosis: &mut Diagnosis,
+    diagnosis: &mut WorkingDiagnosis,
 ) -> Result<Option<String>, L::Error> {
     let needed = session.inputs.thresholds.gain;
     let Some(Checked { preflight, gain }) = check_against_finer(session, before, after).await?
@@ -130,11 +130,11 @@ async fn doubt_by_finer_model<L: Laboratory>(
 /// their reduction of `chi^2`) explain more than the force, it is only noted, because the remaining residual
 /// may come from slightly different laws of those effects.
 fn unlisted(
-    round: &mut Round,
+    round: &mut WorkingRound,
     challenger: Challenger,
     (current, metric): (&Fit, &Metric),
     named: f64,
-    diagnosis: &mut Diagnosis,
+    diagnosis: &mut WorkingDiagnosis,
 ) {
     let said = format!(
         "a generic force {} explains more of the residual than any named effect",

@@ -1,6 +1,6 @@
 //! Removal of effects that became unnecessary beside later ones, or that do not improve prediction.
 use crate::baseline::session::Session;
-use crate::diagnose::diagnosis::Diagnosis;
+use crate::diagnose::diagnosis::WorkingDiagnosis;
 use crate::laboratory::{Laboratory, Stage};
 use crate::model::fit::Fit;
 use crate::validation::compare::ValidationRecord;
@@ -13,7 +13,7 @@ pub(crate) async fn prune<L: Laboratory>(
     session: &mut Session<'_, L>,
     mut current: Fit,
     shown: &[ValidationRecord<'_>],
-    diagnosis: &mut Diagnosis,
+    diagnosis: &mut WorkingDiagnosis,
 ) -> Result<Fit, L::Error> {
     let gain = session.inputs.thresholds.gain;
     while current.model.added.len() > 1 {
@@ -56,7 +56,7 @@ async fn find_unpredictive<L: Laboratory>(
     session: &mut Session<'_, L>,
     shown: &[ValidationRecord<'_>],
     (answer, without): (&Fit, Vec<(usize, Fit)>),
-    diagnosis: &Diagnosis,
+    diagnosis: &WorkingDiagnosis,
 ) -> Result<Option<(usize, Fit, String)>, L::Error> {
     let inputs = session.inputs;
     let tried = diagnosis.rounds.first().map_or(1, |r| r.candidates.len());

@@ -2,8 +2,8 @@
 use crate::baseline::base::Baseline;
 use crate::diagnose::plausibility::Size;
 use crate::estimate::effect_size::{Estimate, ParameterEstimate};
-use crate::hypothesis::candidate::CandidateEffect;
-use crate::hypothesis::round::Round;
+use crate::hypothesis::candidate::WorkingCandidate;
+use crate::hypothesis::round::WorkingRound;
 use crate::model::fit::Fit;
 use crate::thresholds::MOST_NAMES;
 use nalgebra::{Complex, DVector};
@@ -42,9 +42,9 @@ fn sizes(answer: &Fit, effect: &EffectDescriptor, found: &Estimate) -> Vec<Size>
 
 /// Returns the reason why the ambiguity set of a round cannot be reported as answer, if there is one: too
 /// many effects, or effects that have neither joint, channel nor order in common.
-pub(crate) fn no_answer(base: &Baseline, round: &Round) -> Option<String> {
+pub(crate) fn no_answer(base: &Baseline, round: &WorkingRound) -> Option<String> {
     let of_set = |id: &String| round.candidates.iter().find(|own| own.effect.id == *id);
-    let members: Vec<&CandidateEffect> = round.set.iter().filter_map(of_set).collect();
+    let members: Vec<&WorkingCandidate> = round.set.iter().filter_map(of_set).collect();
     let traits: Vec<Traits> = members.iter().map(|own| Traits::of(base, own)).collect();
     let common = Common::of(&traits);
     if round.set.len() > MOST_NAMES {
@@ -71,7 +71,7 @@ struct Traits {
 }
 
 impl Traits {
-    fn of(base: &Baseline, suspect: &CandidateEffect) -> Self {
+    fn of(base: &Baseline, suspect: &WorkingCandidate) -> Self {
         let sizes = suspect.score.as_ref().map(|score| score.size.clone());
         let shown = sizes
             .filter(|sizes| sizes.len() == suspect.signature.ncols())

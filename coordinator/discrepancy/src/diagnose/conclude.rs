@@ -7,7 +7,7 @@
 use crate::baseline::base::Baseline;
 use crate::baseline::session::Session;
 use crate::diagnose::claim::{claim, no_answer};
-use crate::diagnose::diagnosis::Diagnosis;
+use crate::diagnose::diagnosis::WorkingDiagnosis;
 use crate::diagnose::other_starts::{Starts, fit_from_other_starts};
 use crate::diagnose::plausibility;
 use crate::diagnose::reason::{Rejection, left, reason, remarks};
@@ -18,7 +18,7 @@ use crate::diagnose::validate::{
 use crate::estimate::effect_size::{Estimate, refitted};
 use crate::estimate::nuisances::nuisance_estimates;
 use crate::estimate::spread::{Spread, coloured};
-use crate::hypothesis::round::Round;
+use crate::hypothesis::round::WorkingRound;
 use crate::laboratory::{Laboratory, Stage};
 use crate::localisation::parameter_drift::refit::drifts;
 use crate::localisation::summary;
@@ -35,7 +35,7 @@ pub(crate) async fn conclude<L: Laboratory>(
     session: &mut Session<'_, L>,
     answer: Fit,
     shown: &[ValidationRecord<'_>],
-    diagnosis: &mut Diagnosis,
+    diagnosis: &mut WorkingDiagnosis,
 ) -> Result<(), L::Error> {
     let (base, inputs) = (session.base, session.inputs);
     let claims = !answer.model.added.is_empty() || diagnosis.generic.is_some();
@@ -121,9 +121,9 @@ async fn is_trace_alone<L: Laboratory>(
     session: &mut Session<'_, L>,
     after: &Fit,
     shown: &[ValidationRecord<'_>],
-    diagnosis: &mut Diagnosis,
+    diagnosis: &mut WorkingDiagnosis,
 ) -> Result<bool, L::Error> {
-    let traced = diagnosis.rounds.first().and_then(Round::traced);
+    let traced = diagnosis.rounds.first().and_then(WorkingRound::traced);
     let Some(traced) = traced.filter(|_| after.model.added.is_empty()) else {
         return Ok(false);
     };
@@ -150,7 +150,7 @@ async fn settled<L: Laboratory>(
     session: &mut Session<'_, L>,
     (mut answer, ground): (Fit, TestValidity),
     shown: &[ValidationRecord<'_>],
-    diagnosis: &mut Diagnosis,
+    diagnosis: &mut WorkingDiagnosis,
 ) -> Result<Settled, L::Error> {
     let base = session.base;
     let firm = matches!(ground, TestValidity::Valid | TestValidity::NoiseStated);
@@ -203,14 +203,14 @@ async fn settled<L: Laboratory>(
 }
 
 /// Returns the sizes of all effects that were refitted in a round, each from its own refit, named or not.
-fn sizes(round: &Round, metric: &Metric) -> Vec<Estimate> {
+fn sizes(round: &WorkingRound, metric: &Metric) -> Vec<Estimate> {
     let ids = round.refits.iter().map(|own| &own.id);
     ids.filter_map(|id| refitted(round, id, metric)).collect()
 }
 
 /// Returns how reliable the tests are, given the source of the noise level and whether a model was compared
 /// with a finer one.
-fn ground<L>(session: &Session<'_, L>, claims: bool, diagnosis: &Diagnosis) -> TestValidity {
+fn ground<L>(session: &Session<'_, L>, claims: bool, diagnosis: &WorkingDiagnosis) -> TestValidity {
     let (base, inputs) = (session.base, session.inputs);
     let checked = base.preflight.is_some() || diagnosis.preflight_after.is_some();
     if claims && !checked {
@@ -228,7 +228,7 @@ fn ground<L>(session: &Session<'_, L>, claims: bool, diagnosis: &Diagnosis) -> T
 
 /// Returns the reason why the sizes or the ambiguity sets of an answer are none that can be named, if there is
 /// one.
-fn implausible(base: &Baseline, answer: &Fit, diagnosis: &Diagnosis) -> Option<String> {
+fn implausible(base: &Baseline, answer: &Fit, diagnosis: &WorkingDiagnosis) -> Option<String> {
     let sets = || {
         let mut rounds = diagnosis.rounds.iter();
         rounds.find_map(|round| no_answer(base, round))
@@ -243,7 +243,7 @@ fn suspect(id: &str, nats: f64) -> String {
 
 /// Withdraws the effects that an answer does not have any more, because its fit in another minimum is likelier
 /// without them.
-fn withdraw_unneeded(answer: &Fit, diagnosis: &mut Diagnosis) {
+fn withdraw_unneeded(answer: &Fit, diagnosis: &mut WorkingDiagnosis) {
     for round in &mut diagnosis.rounds {
         let Some(id) = round.added.clone() else {
             continue;
@@ -257,7 +257,7 @@ fn withdraw_unneeded(answer: &Fit, diagnosis: &mut Diagnosis) {
 }
 
 /// Withdraws the added effects from the answer of a diagnosis; returns a description of each.
-fn withhold_effects(diagnosis: &mut Diagnosis) -> Vec<String> {
+fn withhold_effects(diagnosis: &mut WorkingDiagnosis) -> Vec<String> {
     let mut suspects = Vec::new();
     for round in &mut diagnosis.rounds {
         let Some(id) = round.added.clone() else {
@@ -271,7 +271,7 @@ fn withhold_effects(diagnosis: &mut Diagnosis) -> Vec<String> {
 }
 
 /// Withdraws the generic force from the answer of a diagnosis; returns a description of it.
-fn withhold_force(diagnosis: &mut Diagnosis) -> Option<String> {
+fn withhold_force(diagnosis: &mut WorkingDiagnosis) -> Option<String> {
     diagnosis.generic.take()?;
     let force = diagnosis.force.as_ref()?;
     Some(suspect(&format!("a force {}", force.id), force.ln_evidence))

@@ -8,20 +8,25 @@ use crate::estimate::force::ForceEstimate;
 use crate::estimate::limit::Limit;
 use crate::estimate::nuisances::NuisanceEstimate;
 use crate::hypothesis::refit::Refitted;
-use crate::hypothesis::round::Round;
+use crate::hypothesis::round::{Round, WorkingRound};
 use crate::inputs::Inputs;
 use crate::laboratory::Stage;
 use crate::localisation::parameter_drift::shifts::ParameterDrift;
 use crate::localisation::summary::Localisation;
-use crate::model::fit::Fit;
+use crate::model::fit::{Fit, FitSummary};
 use crate::record::noise::NoiseSource;
 use crate::validation::compare::GapRow;
 use crate::validation::predictive::Prediction;
 use crate::verdict::Verdict;
+use nalgebra::DMatrix;
+use serde::{Deserialize, Serialize};
+
+/// Diagnosis with its fits and signatures, as its own steps need it.
+pub(crate) type WorkingDiagnosis = Diagnosis<Fit, DMatrix<f64>>;
 
 /// Result of a diagnosis.
-#[derive(Clone, Debug)]
-pub struct Diagnosis {
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Diagnosis<F = FitSummary, S = f64> {
     /// Verdict of the diagnosis.
     pub verdict: Verdict,
     /// Reason of the verdict in one sentence, where it needs one.
@@ -31,7 +36,7 @@ pub struct Diagnosis {
     /// Added effects, then the other members of their ambiguity sets.
     pub effects: Vec<Estimate>,
     /// Rounds of hypothesis tests.
-    pub rounds: Vec<Round>,
+    pub rounds: Vec<Round<F, S>>,
     /// Sizes of the candidate effects that were refitted, each from its own refit, by round.
     pub sizes: Vec<Vec<Estimate>>,
     /// Channels, orders and joints in which the residual of the recalibrated model is concentrated.
@@ -51,9 +56,9 @@ pub struct Diagnosis {
     /// Effects that this record cannot distinguish, and the data that would distinguish them.
     pub look_alikes: Vec<IndistinguishablePair>,
     /// Fit of the recalibrated model without effects.
-    pub before: Option<Fit>,
+    pub before: Option<F>,
     /// Fit of the model with the effects of the answer.
-    pub after: Option<Fit>,
+    pub after: Option<F>,
     /// p-value of the whiteness test of the residual: of the recalibrated model, and of the answer.
     pub whiteness: Option<[f64; 2]>,
     /// Shifts of single parameters when the recalibrated model is refitted on parts of the abscissa and under
@@ -73,7 +78,7 @@ pub struct Diagnosis {
     /// basis.
     pub generic: Option<String>,
     /// Generic force that beats every named effect, with its size, regardless of the verdict.
-    pub force: Option<ForceEstimate>,
+    pub force: Option<ForceEstimate<F>>,
     /// Source of the noise level of the fitted record: scatter of cycles, stated, or guessed.
     pub noise: NoiseSource,
     /// Stages that used up their budget of simulations.
@@ -82,7 +87,7 @@ pub struct Diagnosis {
     pub notes: Vec<String>,
 }
 
-impl Diagnosis {
+impl<F, S> Diagnosis<F, S> {
     /// Returns the effects that are no more than traces, each with its size and the reason.
     pub fn traces(&self) -> Vec<(&Estimate, &str)> {
         let mut traces: Vec<(&Estimate, &str)> = Vec::new();
@@ -141,7 +146,7 @@ impl Diagnosis {
 
     /// Returns the best refit whose effect was neither added in any round nor is a member of an ambiguity
     /// set, with the first round in which an effect was added.
-    pub fn rejected(&self) -> Option<(&Round, &Refitted)> {
+    pub fn rejected(&self) -> Option<(&Round<F, S>, &Refitted<F>)> {
         let round = self.rounds.iter().find(|round| round.added.is_some())?;
         let rival = round.refits.iter().find(|refit| !self.holds(&refit.id))?;
         Some((round, rival))
@@ -151,14 +156,6 @@ impl Diagnosis {
     pub fn holds(&self, id: &str) -> bool {
         let mut sets = self.rounds.iter().flat_map(|round| &round.set);
         sets.any(|member| member == id)
-    }
-
-    /// Withdraws an effect from every round that added it, and records the reason.
-    pub(crate) fn withdraw(&mut self, id: &str, reason: &str) {
-        let rounds = self.rounds.iter_mut();
-        for round in rounds.filter(|round| round.added.as_deref() == Some(id)) {
-            round.withdraw(reason.to_owned());
-        }
     }
 
     /// Returns the detection limits of the effects that the answer does not name.
@@ -196,6 +193,49 @@ impl Diagnosis {
             noise: NoiseSource::Measured,
             ran_out: Vec::new(),
             notes: Vec::new(),
+        }
+    }
+}
+
+impl WorkingDiagnosis {
+    /// Withdraws an effect from every round that added it, and records the reason.
+    pub(crate) fn withdraw(&mut self, id: &str, reason: &str) {
+        let rounds = self.rounds.iter_mut();
+        for round in rounds.filter(|round| round.added.as_deref() == Some(id)) {
+            round.withdraw(reason.to_owned());
+        }
+    }
+
+    /// Returns the diagnosis as reports read it: with summaries of its fits and signatures.
+    pub(crate) fn summary(self) -> Diagnosis {
+        let rounds = self.rounds.into_iter().map(WorkingRound::summary);
+        Diagnosis {
+            before: self.before.map(|fit| fit.summary()),
+            after: self.after.map(|fit| fit.summary()),
+            rounds: rounds.collect(),
+            force: self.force.map(ForceEstimate::summary),
+            verdict: self.verdict,
+            reason: self.reason,
+            remainder: self.remainder,
+            effects: self.effects,
+            sizes: self.sizes,
+            localisation: self.localisation,
+            preflight: self.preflight,
+            preflight_after: self.preflight_after,
+            limits: self.limits,
+            nuisances: self.nuisances,
+            absorbed: self.absorbed,
+            look_alikes: self.look_alikes,
+            whiteness: self.whiteness,
+            drifts: self.drifts,
+            drifts_after: self.drifts_after,
+            rows: self.rows,
+            prediction: self.prediction,
+            rival: self.rival,
+            generic: self.generic,
+            noise: self.noise,
+            ran_out: self.ran_out,
+            notes: self.notes,
         }
     }
 }

@@ -34,6 +34,7 @@ use crate::localisation::summary;
 use crate::thresholds::MAX_PREDICTED_DECREASE;
 use crate::validation::compare::validation_records;
 use conclude::conclude;
+use diagnosis::WorkingDiagnosis;
 use rounds::rounds;
 
 /// Runs a diagnosis within the budget of simulations.
@@ -58,14 +59,14 @@ pub async fn diagnose<L: Laboratory>(lab: &mut L, inputs: &Inputs) -> Result<Dia
     if diagnosis.is_in_part() {
         diagnosis.reason = Some(diagnosis.completeness(inputs));
     }
-    Ok(diagnosis)
+    Ok(diagnosis.summary())
 }
 
 /// Runs a diagnosis with a simulator that enforces the budget.
 async fn diagnose_budgeted<L: Laboratory>(
     lab: &mut L,
     inputs: &Inputs,
-) -> Result<Diagnosis, L::Error> {
+) -> Result<WorkingDiagnosis, L::Error> {
     let Some(record) = inputs
         .records
         .first()
@@ -90,7 +91,7 @@ async fn diagnose_budgeted<L: Laboratory>(
         base: &base,
         inputs,
     };
-    let mut diagnosis = Diagnosis {
+    let mut diagnosis = WorkingDiagnosis {
         reason: None,
         localisation: Some(summary::localise(&mut session).await?),
         noise: base.known(),

@@ -2,7 +2,7 @@
 //! points: it may lie in a wrong minimum.
 use crate::baseline::global_start::global_starts;
 use crate::baseline::session::Session;
-use crate::hypothesis::round::Round;
+use crate::hypothesis::round::WorkingRound;
 use crate::laboratory::{Laboratory, Stage};
 use crate::model::fit::Fit;
 use crate::model::unknowns::Point;
@@ -34,7 +34,7 @@ impl Starts {
 pub(crate) async fn fit_from_other_starts<L: Laboratory>(
     session: &mut Session<'_, L>,
     answer: &Fit,
-    rounds: &[Round],
+    rounds: &[WorkingRound],
     starts: Starts,
 ) -> Result<Option<Fit>, L::Error> {
     if answer.model.added.is_empty() {
@@ -84,7 +84,7 @@ pub(crate) async fn fit_from_other_starts<L: Laboratory>(
 
 /// Returns the answer at each other size at which one of its effects was tested; effects that act in proportion
 /// to their size have none.
-fn other_sizes(answer: &Fit, rounds: &[Round]) -> Vec<Point> {
+fn other_sizes(answer: &Fit, rounds: &[WorkingRound]) -> Vec<Point> {
     let mut points = Vec::new();
     for (position, effect) in answer.model.added.iter().enumerate() {
         let mut tested = rounds.iter().flat_map(|round| &round.candidates);

@@ -1,6 +1,6 @@
 //! Verbal results of a diagnosis: reason of the verdict and further remarks.
 use crate::baseline::base::Baseline;
-use crate::diagnose::diagnosis::Diagnosis;
+use crate::diagnose::diagnosis::WorkingDiagnosis;
 use crate::inputs::Inputs;
 use crate::model::fit::Fit;
 use crate::verdict::{TestValidity, Verdict};
@@ -36,7 +36,7 @@ pub(crate) fn left(base: &Baseline, after: &Fit) -> String {
 /// Returns the reason for the verdict of a diagnosis in words; `None` where it needs none.
 pub(crate) fn reason(
     ground: TestValidity,
-    diagnosis: &Diagnosis,
+    diagnosis: &WorkingDiagnosis,
     rejection: &Rejection,
 ) -> Option<String> {
     let nothing = diagnosis.verdict == Verdict::NothingDetected;
@@ -84,7 +84,7 @@ pub(crate) fn reason(
 }
 
 /// Adds remarks on numerical error, and on effects excluded from the tests, to a diagnosis.
-pub(crate) fn remarks(inputs: &Inputs, diagnosis: &mut Diagnosis) {
+pub(crate) fn remarks(inputs: &Inputs, diagnosis: &mut WorkingDiagnosis) {
     let (of, check) = match (&diagnosis.preflight_after, &diagnosis.preflight) {
         (Some(after), _) => ("the answer", Some(after)),
         (None, before) => ("the recalibrated model", before.as_ref()),

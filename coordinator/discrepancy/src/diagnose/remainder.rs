@@ -9,9 +9,10 @@ use crate::model::nuisance_parameter::NuisanceParameter;
 use crate::thresholds::{AT_BOUND, BEYOND, MAX_PREDICTED_DECREASE, WITHIN};
 use crate::validation::compare::{DataRole, GapRow, ValidationRecord};
 use crate::validation::predictive::is_explained;
+use serde::{Deserialize, Serialize};
 
 /// What an answer explains of the disagreement between simulation and measurement, and what it leaves.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Remainder {
     /// Share of the gap of the fitted record that the answer closes; `None` without an answer.
     pub explained: Option<f64>,
@@ -30,7 +31,7 @@ pub struct Remainder {
 }
 
 /// Record on which a model leaves more than noise, with the place where most of it lies.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Left {
     /// Index of the record's working condition in the case.
     pub condition: usize,

@@ -6,9 +6,9 @@
 //! if it passes the same checks: evidence, and comparison with a finer model.
 use crate::baseline::recheck::check_against_finer;
 use crate::baseline::session::Session;
-use crate::diagnose::diagnosis::Diagnosis;
-use crate::hypothesis::candidate::CandidateEffect;
-use crate::hypothesis::round::Round;
+use crate::diagnose::diagnosis::WorkingDiagnosis;
+use crate::hypothesis::candidate::WorkingCandidate;
+use crate::hypothesis::round::WorkingRound;
 use crate::laboratory::{Laboratory, Stage};
 use crate::linear::evidence::ambiguity_set;
 use crate::linear::isolability::similarity;
@@ -35,7 +35,7 @@ pub(crate) async fn rank<L: Laboratory>(
     session: &mut Session<'_, L>,
     mut answer: Fit,
     shown: &[ValidationRecord<'_>],
-    diagnosis: &mut Diagnosis,
+    diagnosis: &mut WorkingDiagnosis,
 ) -> Result<Fit, L::Error> {
     for at in 0..diagnosis.rounds.len() {
         let Some(added) = diagnosis.rounds[at].added.clone() else {
@@ -81,7 +81,7 @@ async fn merits<L: Laboratory>(
     session: &mut Session<'_, L>,
     at: (&Fit, usize),
     shown: &[ValidationRecord<'_>],
-    round: &Round,
+    round: &WorkingRound,
 ) -> Result<Vec<Ranked>, L::Error> {
     let (answer, _) = at;
     let rivals = swapped(session, at, round).await?;
@@ -138,7 +138,7 @@ async fn is_acceptable<L: Laboratory>(
 async fn swapped<L: Laboratory>(
     session: &mut Session<'_, L>,
     (answer, position): (&Fit, usize),
-    round: &Round,
+    round: &WorkingRound,
 ) -> Result<Vec<(String, Fit)>, L::Error> {
     let in_answer = |id: &String| answer.model.added.iter().any(|own| own.id == *id);
     let mut rivals: Vec<_> = round
@@ -151,7 +151,7 @@ async fn swapped<L: Laboratory>(
         let tangent = session.base.fit.tangent();
         let of = |id: &str| round.candidates.iter().find(|own| own.effect.id == id);
         let added = of(&answer.model.added[position].id);
-        let alike = |other: Option<&CandidateEffect>| {
+        let alike = |other: Option<&WorkingCandidate>| {
             let pair = added.zip(other);
             pair.map_or(0.0, |(a, b)| {
                 similarity(&a.signature, &b.signature, &tangent)

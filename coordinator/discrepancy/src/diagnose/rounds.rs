@@ -4,14 +4,14 @@ use crate::baseline::discretisation_check;
 use crate::baseline::session::Session;
 use crate::diagnose::acceptance::accept;
 use crate::diagnose::backward_elimination::prune;
-use crate::diagnose::diagnosis::Diagnosis;
+use crate::diagnose::diagnosis::WorkingDiagnosis;
 use crate::diagnose::rivals::rank;
 use crate::estimate::absorbed::absorbed;
 use crate::estimate::experiment_design;
 use crate::estimate::limit::limits;
-use crate::hypothesis::candidate::{self, CandidateEffect};
+use crate::hypothesis::candidate::{self, WorkingCandidate};
 use crate::hypothesis::refit::{Refitted, refit};
-use crate::hypothesis::round::Round;
+use crate::hypothesis::round::WorkingRound;
 use crate::hypothesis::signature::examine;
 use crate::hypothesis::valley_search;
 use crate::laboratory::{Finding, Laboratory, Stage, Suspect};
@@ -35,7 +35,7 @@ const AGAIN: usize = 2;
 pub(crate) async fn rounds<L: Laboratory>(
     session: &mut Session<'_, L>,
     shown: &[ValidationRecord<'_>],
-    diagnosis: &mut Diagnosis,
+    diagnosis: &mut WorkingDiagnosis,
 ) -> Result<Fit, L::Error> {
     let (base, inputs) = (session.base, session.inputs);
     let mut current = base.fit.clone();
@@ -72,7 +72,7 @@ fn ids(fit: &Fit) -> Vec<String> {
 async fn forward_selection<L: Laboratory>(
     session: &mut Session<'_, L>,
     mut current: Fit,
-    diagnosis: &mut Diagnosis,
+    diagnosis: &mut WorkingDiagnosis,
 ) -> Result<Fit, L::Error> {
     let inputs = session.inputs;
     let (generic, named): (Vec<EffectDescriptor>, Vec<EffectDescriptor>) =
@@ -114,7 +114,7 @@ pub(crate) async fn test_effects<L: Laboratory>(
     current: &Fit,
     named: &[EffectDescriptor],
     generic: &[EffectDescriptor],
-) -> Result<Round, L::Error> {
+) -> Result<WorkingRound, L::Error> {
     let thresholds = &session.inputs.thresholds;
     let mut tests = session.experiments(Stage::Test);
     let suspects = examine(&mut tests, current, named).await?;
@@ -132,7 +132,7 @@ pub(crate) async fn test_effects<L: Laboratory>(
     let rest = order.split_off(likely.min(order.len()));
     // what acts from a level on may do so whatever a test at one size says
     let held: Vec<&str> = order.iter().map(|own| &*own.effect.id).collect();
-    let mut bent: Vec<&CandidateEffect> = suspects
+    let mut bent: Vec<&WorkingCandidate> = suspects
         .iter()
         .filter(|own| !own.rungs.is_empty() && !held.contains(&&*own.effect.id))
         .collect();
@@ -159,19 +159,19 @@ pub(crate) async fn test_effects<L: Laboratory>(
         &suspects,
         &refits,
     ));
-    Ok(Round::new(current, suspects, generics, refits))
+    Ok(WorkingRound::new(current, suspects, generics, refits))
 }
 
 /// Summarises the tests and refits of candidate effects against a model, for display.
 fn finding(
     record: &Record,
     current: &Fit,
-    suspects: &[CandidateEffect],
-    refits: &[Refitted],
+    suspects: &[WorkingCandidate],
+    refits: &[Refitted<Fit>],
 ) -> Finding {
     let needed = [current.discrepancy().cloned()];
     let null = current.log_evidence_among(&needed);
-    let suspect = |own: &&CandidateEffect| Suspect {
+    let suspect = |own: &&WorkingCandidate| Suspect {
         id: own.effect.id.clone(),
         title: own.effect.title.clone(),
         p_value: own.p_value(),

@@ -4,14 +4,14 @@
 use crate::baseline::recalibrate;
 use crate::baseline::session::Session;
 use crate::diagnose::claim::claim;
-use crate::diagnose::diagnosis::Diagnosis;
+use crate::diagnose::diagnosis::WorkingDiagnosis;
 use crate::diagnose::plausibility::{self, Size};
 use crate::diagnose::remainder::{instruments_beyond, is_converged, percent};
 use crate::diagnose::settle::{SettledFit, settle};
 use crate::estimate::effect_size::estimates;
 use crate::estimate::force::force;
 use crate::hypothesis::generic_force::in_place;
-use crate::hypothesis::round::Round;
+use crate::hypothesis::round::WorkingRound;
 use crate::hypothesis::trace::largest_change;
 use crate::inputs::Inputs;
 use crate::laboratory::{Laboratory, Stage};
@@ -28,7 +28,7 @@ pub(crate) async fn validate<L: Laboratory>(
     session: &mut Session<'_, L>,
     answer: &mut Fit,
     shown: &[ValidationRecord<'_>],
-    diagnosis: &mut Diagnosis,
+    diagnosis: &mut WorkingDiagnosis,
 ) -> Result<Option<String>, L::Error> {
     let base = session.base;
     let SettledFit { fit, beyond } = settle(session, answer.clone()).await?;
@@ -139,7 +139,7 @@ fn no_fit(answer: &Fit, ids: &str, (rows, beyond): (&[GapRow], &[String])) -> Op
 pub(crate) async fn drop_implausible<L: Laboratory>(
     session: &mut Session<'_, L>,
     answer: &Fit,
-    diagnosis: &mut Diagnosis,
+    diagnosis: &mut WorkingDiagnosis,
 ) -> Result<Option<Fit>, L::Error> {
     let added = &answer.model.added;
     let Some(doubt) = plausibility::doubt(&claim(answer, &diagnosis.effects)) else {
@@ -163,14 +163,14 @@ pub(crate) async fn drop_implausible<L: Laboratory>(
 pub(crate) async fn replace_by_force<L: Laboratory>(
     session: &mut Session<'_, L>,
     answer: &Fit,
-    diagnosis: &mut Diagnosis,
+    diagnosis: &mut WorkingDiagnosis,
 ) -> Result<Option<Fit>, L::Error> {
     if diagnosis.generic.is_some() {
         return Ok(None);
     }
     let sizes = claim(answer, &diagnosis.effects);
     for (position, effect) in answer.model.added.iter().enumerate() {
-        let own = |round: &&mut Round| round.added.as_ref() == Some(&effect.id);
+        let own = |round: &&mut WorkingRound| round.added.as_ref() == Some(&effect.id);
         let Some(round) = diagnosis.rounds.iter_mut().find(own) else {
             continue;
         };
@@ -199,7 +199,7 @@ pub(crate) async fn doubt_of_force<L: Laboratory>(
     session: &mut Session<'_, L>,
     answer: &Fit,
     shown: &[ValidationRecord<'_>],
-    diagnosis: &mut Diagnosis,
+    diagnosis: &mut WorkingDiagnosis,
 ) -> Result<Option<String>, L::Error> {
     let Some(force) = diagnosis.force.as_mut() else {
         return Ok(None);
@@ -232,7 +232,7 @@ pub(crate) async fn prove<L: Laboratory>(
     session: &mut Session<'_, L>,
     after: &Fit,
     shown: &[ValidationRecord<'_>],
-    diagnosis: &mut Diagnosis,
+    diagnosis: &mut WorkingDiagnosis,
 ) -> Result<(), L::Error> {
     let base = session.base;
     let mut experiments = session.experiments(Stage::Show);

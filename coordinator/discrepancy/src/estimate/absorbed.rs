@@ -1,15 +1,15 @@
 //! Effects that a record cannot show because the unknowns absorb them, with the measurement that would reveal
 //! each.
-use crate::hypothesis::candidate::CandidateEffect;
-use crate::hypothesis::round::Round;
+use crate::hypothesis::candidate::WorkingCandidate;
+use crate::hypothesis::round::WorkingRound;
 use crate::linear::tangent::Tangent;
 use crate::model::fit::Fit;
 use nalgebra::DMatrix;
 use search::least_squares::Variable;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Effect that recalibration absorbs.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Absorbed {
     /// Identifier of the effect.
     pub id: String,
@@ -27,7 +27,7 @@ const MAX_REPORTED: usize = 8;
 const MIN_VISIBLE_SHARE: f64 = 0.2;
 
 /// Returns the effects of a round that are almost completely absorbed at a fit, the largest share first.
-pub(crate) fn absorbed(round: &Round, fit: &Fit) -> Vec<Absorbed> {
+pub(crate) fn absorbed(round: &WorkingRound, fit: &Fit) -> Vec<Absorbed> {
     let tangent = fit.tangent();
     // of what is not in proportion to its size only a refit says so
     let refuted = |id: &str| {
@@ -38,13 +38,13 @@ pub(crate) fn absorbed(round: &Round, fit: &Fit) -> Vec<Absorbed> {
         let moves = suspect.signature.norm_squared() > 0.0;
         moves && (suspect.linear || refuted(&suspect.effect.id))
     });
-    let mut all: Vec<(f64, &CandidateEffect)> = visible
+    let mut all: Vec<(f64, &WorkingCandidate)> = visible
         .map(|suspect| (taken(&suspect.signature, &tangent), suspect))
         .filter(|(share, _)| *share >= MOST)
         .collect();
     all.sort_by(|(a, one), (b, other)| b.total_cmp(a).then(one.effect.id.cmp(&other.effect.id)));
     all.truncate(MAX_REPORTED);
-    let told = |(share, suspect): (f64, &CandidateEffect)| Absorbed {
+    let told = |(share, suspect): (f64, &WorkingCandidate)| Absorbed {
         id: suspect.effect.id.clone(),
         share,
         measurement: measurement(suspect, fit),
@@ -65,7 +65,7 @@ fn taken(signature: &DMatrix<f64>, tangent: &Tangent) -> f64 {
 
 /// Describes the measurement that would show the effect: a separate test of the unknown that absorbs most of
 /// it, or a sensor at the place where the effect acts.
-fn measurement(suspect: &CandidateEffect, fit: &Fit) -> String {
+fn measurement(suspect: &WorkingCandidate, fit: &Fit) -> String {
     let axes = fit.model.space.axes();
     let without = |k: usize| {
         let mut variables: Vec<Variable> = fit.variables().to_vec();

@@ -5,12 +5,13 @@ use crate::record::whitened::WhitenedRecord;
 use crate::validation::gap_closure::gap;
 use nalgebra::{DMatrix, DVector};
 use protocol::case::Channel;
+use serde::{Deserialize, Serialize};
 
 /// Half-width of a 95 % interval in standard deviations.
 const WIDTH: f64 = 1.96;
 
 /// Smooth discrepancy beside a fit, given its record and the fitted values.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct DiscrepancyEstimate {
     /// Channels of the fitted record, with the values of the abscissa that were fitted.
     pub channels: Vec<Channel>,

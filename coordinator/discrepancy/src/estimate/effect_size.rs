@@ -1,12 +1,13 @@
 //! Effects of the answer, with their estimated sizes and intervals.
 use crate::estimate::spread::Spread;
-use crate::hypothesis::round::Round;
+use crate::hypothesis::round::WorkingRound;
 use crate::linear::score::family_wise;
 use crate::model::fit::Fit;
 use crate::record::metric::Metric;
+use serde::{Deserialize, Serialize};
 
 /// Estimate of one effect that the diagnosis added to the model, or that the record cannot distinguish from it.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Estimate {
     /// Identifier of the effect.
     pub id: String,
@@ -25,7 +26,7 @@ pub struct Estimate {
 }
 
 /// Estimate of a parameter of an effect.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ParameterEstimate {
     /// Name of the parameter.
     pub name: String,
@@ -38,7 +39,7 @@ pub struct ParameterEstimate {
 }
 
 /// Returns the estimates of the added effects, then those of the other members of their ambiguity sets.
-pub(crate) fn estimates(rounds: &[Round], after: &Fit, metric: &Metric) -> Vec<Estimate> {
+pub(crate) fn estimates(rounds: &[WorkingRound], after: &Fit, metric: &Metric) -> Vec<Estimate> {
     let mut found: Vec<Estimate> = Vec::new();
     for added_first in [true, false] {
         for round in rounds {
@@ -58,7 +59,7 @@ pub(crate) fn estimates(rounds: &[Round], after: &Fit, metric: &Metric) -> Vec<E
 
 /// Estimates an effect: an added effect from the final model, together with all other added effects; a rival
 /// from its own refit.
-fn estimate(round: &Round, id: &str, (after, metric): (&Fit, &Metric)) -> Option<Estimate> {
+fn estimate(round: &WorkingRound, id: &str, (after, metric): (&Fit, &Metric)) -> Option<Estimate> {
     if after.model.added.iter().any(|own| own.id == id) {
         let refitted = round.refits.iter().find(|r| r.id == id);
         let log_evidence = refitted.map_or_else(|| after.log_evidence(), |own| own.log_evidence);
@@ -69,13 +70,13 @@ fn estimate(round: &Round, id: &str, (after, metric): (&Fit, &Metric)) -> Option
 }
 
 /// Estimates a candidate effect from its own refit.
-pub(crate) fn refitted(round: &Round, id: &str, metric: &Metric) -> Option<Estimate> {
+pub(crate) fn refitted(round: &WorkingRound, id: &str, metric: &Metric) -> Option<Estimate> {
     let own = round.refits.iter().find(|r| r.id == id)?;
     sized(round, id, (&own.fit, metric), own.log_evidence)
 }
 
 fn sized(
-    round: &Round,
+    round: &WorkingRound,
     id: &str,
     (fit, metric): (&Fit, &Metric),
     log_evidence: f64,

@@ -5,8 +5,8 @@
 //! analysis is linear in the effects, at the recalibrated point, and independent of the verdict.
 use crate::baseline::session::Session;
 use crate::estimate::limit::Limit;
-use crate::hypothesis::candidate::CandidateEffect;
-use crate::hypothesis::round::Round;
+use crate::hypothesis::candidate::WorkingCandidate;
+use crate::hypothesis::round::WorkingRound;
 use crate::laboratory::{Laboratory, Stage};
 use crate::linear::isolability::pairs;
 use crate::linear::stack::stacked;
@@ -17,10 +17,10 @@ use crate::model::parameter::sizes;
 use crate::record::whitened::WhitenedRecord;
 use nalgebra::{DMatrix, DVector};
 use search::least_squares::Linearized;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Pair of effects that the record cannot separate, with the data that would.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct IndistinguishablePair {
     /// Identifiers of the two effects.
     pub effects: [String; 2],
@@ -39,7 +39,7 @@ const MULTIPLE: f64 = 3.0;
 /// Candidate effect that the record can detect, with the amount of each of its sizes at which it is compared,
 /// as a multiple of the parameter's scale.
 struct Visible<'a> {
-    suspect: &'a CandidateEffect,
+    suspect: &'a WorkingCandidate,
     amounts: Vec<f64>,
 }
 
@@ -48,7 +48,7 @@ struct Visible<'a> {
 pub(crate) async fn weigh<L: Laboratory>(
     session: &mut Session<'_, L>,
     fit: &Fit,
-    round: &Round,
+    round: &WorkingRound,
     limits: &[Limit],
 ) -> Result<Vec<IndistinguishablePair>, L::Error> {
     let (base, others) = (&session.base.record, session.inputs.others());
@@ -112,7 +112,7 @@ pub(crate) async fn weigh<L: Laboratory>(
 
 /// Returns the amount of each size at which an effect is compared, as a multiple of the parameter's scale;
 /// `None` for an effect that cannot be detected.
-fn amounts(suspect: &CandidateEffect, limits: &[Limit]) -> Option<Vec<f64>> {
+fn amounts(suspect: &WorkingCandidate, limits: &[Limit]) -> Option<Vec<f64>> {
     let each = sizes(&suspect.effect).into_iter().map(|k| {
         let parameter = &suspect.effect.parameters[k];
         let own =

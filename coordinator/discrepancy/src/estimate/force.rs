@@ -2,14 +2,15 @@
 //! effect: where it acts, its form, its amplitude and the misfit that it removes.
 use crate::estimate::spread::Spread;
 use crate::hypothesis::generic_force::Challenger;
-use crate::model::fit::Fit;
+use crate::model::fit::{Fit, FitSummary};
 use crate::model::probe;
 use crate::record::metric::Metric;
 use crate::validation::compare::GapRow;
+use serde::{Deserialize, Serialize};
 
 /// Generic force with its estimated amplitude and the misfit that it removes.
-#[derive(Clone, Debug)]
-pub struct ForceEstimate {
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct ForceEstimate<F = FitSummary> {
     /// Identifier of the generic force; for a harmonic, that of the stronger phase.
     pub id: String,
     /// Joint at which the force acts.
@@ -29,14 +30,35 @@ pub struct ForceEstimate {
     /// (nats).
     pub ln_evidence: f64,
     /// Fit of the model with the force.
-    pub fit: Fit,
+    pub fit: F,
     /// Misfit to each record before and after the force is added.
     pub rows: Vec<GapRow>,
 }
 
+impl ForceEstimate<Fit> {
+    /// Returns the estimate with a summary of its fit.
+    pub(crate) fn summary(self) -> ForceEstimate {
+        ForceEstimate {
+            fit: self.fit.summary(),
+            id: self.id,
+            joint: self.joint,
+            form: self.form,
+            amplitude: self.amplitude,
+            unit: self.unit,
+            interval: self.interval,
+            phase_deg: self.phase_deg,
+            ln_evidence: self.ln_evidence,
+            rows: self.rows,
+        }
+    }
+}
+
 /// Builds the report of a generic force (`challenger`) that beat the model `before`; the misfits by record
 /// are still empty.
-pub(crate) fn force(challenger: Challenger, (before, metric): (&Fit, &Metric)) -> ForceEstimate {
+pub(crate) fn force(
+    challenger: Challenger,
+    (before, metric): (&Fit, &Metric),
+) -> ForceEstimate<Fit> {
     let fit = challenger.fit;
     let first = before.model.added.len();
     let parts = &fit.model.added[first..];

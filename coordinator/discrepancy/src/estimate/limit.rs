@@ -1,14 +1,14 @@
 //! Detection limits: the size from which an effect would be detected, independent of any verdict.
-use crate::hypothesis::round::Round;
+use crate::hypothesis::round::WorkingRound;
 use crate::linear::isolability::{DetectionThreshold, detection_limit};
 use crate::linear::score::single;
 use crate::model::fit::Fit;
 use crate::model::parameter::sizes;
 use protocol::announce::Sign;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Detection limit of an effect.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Limit {
     /// Identifier of the effect.
     pub id: String,
@@ -19,7 +19,6 @@ pub struct Limit {
     /// Smallest size of the effect that would be detected; infinite where recalibration absorbs the effect.
     pub size: f64,
     /// Largest size within the parameter's bounds.
-    #[serde(skip)]
     pub largest: f64,
 }
 
@@ -31,7 +30,7 @@ impl Limit {
 }
 
 /// Computes the detection limits of all effects of a round, at a family-wise level `alpha`.
-pub(crate) fn limits(round: &Round, fit: &Fit, alpha: f64) -> Vec<Limit> {
+pub(crate) fn limits(round: &WorkingRound, fit: &Fit, alpha: f64) -> Vec<Limit> {
     let tangent = fit.tangent();
     let mut limits = Vec::new();
     for suspect in round

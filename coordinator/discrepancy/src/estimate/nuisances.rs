@@ -3,10 +3,10 @@ use crate::estimate::spread::Spread;
 use crate::model::fit::Fit;
 use crate::model::nuisance_parameter::NuisanceParameter;
 use crate::thresholds::WITHIN;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Nuisance parameter with its most likely value.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct NuisanceEstimate {
     /// Identifier of the effect that the nuisance parameter stands for, or of the gain of a channel.
     pub id: String,

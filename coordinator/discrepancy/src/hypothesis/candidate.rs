@@ -2,10 +2,14 @@
 use crate::linear::score::{Score, family_wise};
 use nalgebra::{DMatrix, DVector, Matrix};
 use protocol::announce::EffectDescriptor;
+use serde::{Deserialize, Serialize};
+
+/// Candidate effect with its signature.
+pub(crate) type WorkingCandidate = CandidateEffect<DMatrix<f64>>;
 
 /// Candidate effect with its test.
-#[derive(Clone, Debug)]
-pub struct CandidateEffect {
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct CandidateEffect<S = f64> {
     /// Effect under test.
     pub effect: EffectDescriptor,
     /// Result of the score test; `None` where the effect could not be simulated.
@@ -17,15 +21,16 @@ pub struct CandidateEffect {
     pub rungs: Vec<Vec<f64>>,
     /// Whether the curves change in proportion to the effect's size.
     pub linear: bool,
-    /// Whitened change of the curves per unit of each size of the effect; one matrix column per size.
-    pub signature: DMatrix<f64>,
+    /// Signature: whitened change of the curves per unit of each size of the effect, one matrix column per size; in a
+    /// summary its squared length alone.
+    pub signature: S,
     /// Scaled parameters at which each signature column was computed, with all other sizes absent.
     pub taken: Vec<Vec<f64>>,
     /// Number of parameter shapes and sizes at which the effect was tested.
     pub tries: usize,
 }
 
-impl CandidateEffect {
+impl<S> CandidateEffect<S> {
     /// Returns the p-value of the effect's score test, corrected for the number of shapes and sizes tried.
     pub fn p_value(&self) -> f64 {
         self.score
@@ -46,9 +51,25 @@ impl CandidateEffect {
     }
 }
 
+impl WorkingCandidate {
+    /// Returns the test with the squared length of the signature in its place.
+    pub(crate) fn summary(self) -> CandidateEffect {
+        CandidateEffect {
+            effect: self.effect,
+            score: self.score,
+            start: self.start,
+            rungs: self.rungs,
+            linear: self.linear,
+            signature: self.signature.norm_squared(),
+            taken: self.taken,
+            tries: self.tries,
+        }
+    }
+}
+
 /// Returns the candidate effects with a positive statistic, likeliest first.
-pub(crate) fn ranked(suspects: &[CandidateEffect]) -> Vec<&CandidateEffect> {
-    let mut order: Vec<&CandidateEffect> =
+pub(crate) fn ranked(suspects: &[WorkingCandidate]) -> Vec<&WorkingCandidate> {
+    let mut order: Vec<&WorkingCandidate> =
         suspects.iter().filter(|s| s.statistic() > 0.0).collect();
     order.sort_by(|a, b| {
         a.p_value()
@@ -59,7 +80,7 @@ pub(crate) fn ranked(suspects: &[CandidateEffect]) -> Vec<&CandidateEffect> {
 }
 
 /// Concatenates the signature columns of several effects.
-pub(crate) fn joined(parts: &[&CandidateEffect]) -> DMatrix<f64> {
+pub(crate) fn joined(parts: &[&WorkingCandidate]) -> DMatrix<f64> {
     let columns = parts.iter().flat_map(|part| part.signature.column_iter());
     let columns: Vec<DVector<f64>> = columns.map(Matrix::into_owned).collect();
     DMatrix::from_columns(&columns)

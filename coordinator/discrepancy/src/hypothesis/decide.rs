@@ -3,7 +3,7 @@
 //! It uses the tests and refits of the round only; the check against a finer model is made elsewhere.
 use crate::baseline::base::Baseline;
 use crate::hypothesis::joint_refit::JointRefit;
-use crate::hypothesis::round::Round;
+use crate::hypothesis::round::WorkingRound;
 use crate::hypothesis::trace::largest_change;
 use crate::model::fit::Fit;
 use crate::thresholds::Thresholds;
@@ -11,7 +11,7 @@ use crate::thresholds::Thresholds;
 /// Returns the best refit as the next model if it is accepted, else records the reason in the round. The
 /// ambiguity set is determined after all rounds.
 pub(crate) fn decide(
-    round: &mut Round,
+    round: &mut WorkingRound,
     current: &Fit,
     base: &Baseline,
     thresholds: &Thresholds,
@@ -36,10 +36,10 @@ pub(crate) fn decide(
 /// Decides whether several effects together are accepted instead of the best single one. If so, `round`
 /// becomes the round of the first effect, and one copy of the round is returned for each of the others.
 pub(crate) fn decide_joint(
-    round: &mut Round,
+    round: &mut WorkingRound,
     (both, current): (&JointRefit, &Fit),
     thresholds: &Thresholds,
-) -> Option<Vec<Round>> {
+) -> Option<Vec<WorkingRound>> {
     let best = round.refits.first().map_or(current, |best| &best.fit);
     let gains = [best, current].map(|other| both.fit.gain_over(other));
     let enough = gains.iter().all(|gained| *gained > thresholds.gain);
@@ -47,7 +47,7 @@ pub(crate) fn decide_joint(
         return None;
     }
     round.dispersion = both.fit.dispersion().min(current.dispersion());
-    let mut rounds = both.members.iter().map(|id| Round {
+    let mut rounds = both.members.iter().map(|id| WorkingRound {
         added: Some(id.clone()),
         set: vec![id.clone()],
         together: true,

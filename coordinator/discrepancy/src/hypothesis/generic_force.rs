@@ -6,8 +6,8 @@
 //! effect is rejected. A form whose projected signature is nearly that of a library
 //! effect does not count as a challenger, because the named effect is then the better description.
 use crate::baseline::session::Session;
-use crate::hypothesis::candidate::{CandidateEffect, joined};
-use crate::hypothesis::round::Round;
+use crate::hypothesis::candidate::{WorkingCandidate, joined};
+use crate::hypothesis::round::WorkingRound;
 use crate::laboratory::{Laboratory, Stage};
 use crate::linear::isolability::similarity;
 use crate::linear::score::{chi_squared_tail, family_wise, score};
@@ -23,7 +23,7 @@ use search::least_squares::LeastSquaresSettings;
 struct Form<'a> {
     /// Components of the generic force (one, or the two phases of a harmonic), in descending order of their
     /// score-test statistic.
-    parts: Vec<&'a CandidateEffect>,
+    parts: Vec<&'a WorkingCandidate>,
     signature: DMatrix<f64>,
     statistic: f64,
     p_value: f64,
@@ -67,7 +67,7 @@ const TRIED: usize = 3;
 pub(crate) async fn challenge<L: Laboratory>(
     session: &mut Session<'_, L>,
     current: &Fit,
-    round: &Round,
+    round: &WorkingRound,
 ) -> Result<Option<Challenger>, L::Error> {
     let thresholds = &session.inputs.thresholds;
     let best = round.refits.first();
@@ -121,7 +121,7 @@ pub(crate) async fn in_place<L: Laboratory>(
     session: &mut Session<'_, L>,
     answer: &Fit,
     (position, vanishes): (usize, bool),
-    round: &Round,
+    round: &WorkingRound,
 ) -> Result<Option<Replacement>, L::Error> {
     /// Minimum share of the effect's reduction of `chi^2` that the test of a force promises: with less it does
     /// not reach the effect by a refit.
@@ -158,11 +158,11 @@ pub(crate) async fn in_place<L: Laboratory>(
 
 /// Returns all generic forces, with the two phases of a harmonic combined into one form.
 fn forms<'a>(
-    generics: &'a [CandidateEffect],
+    generics: &'a [WorkingCandidate],
     residual: &DVector<f64>,
     tangent: &Tangent,
 ) -> Vec<Form<'a>> {
-    let form = |mut parts: Vec<&'a CandidateEffect>| {
+    let form = |mut parts: Vec<&'a WorkingCandidate>| {
         parts.sort_by(|a, b| b.statistic().total_cmp(&a.statistic()));
         if parts.iter().all(|part| part.signature.ncols() == 0) {
             return None;
@@ -179,7 +179,7 @@ fn forms<'a>(
     let mut all = Vec::new();
     for (at, generic) in generics.iter().enumerate() {
         let order = harmonic(&generic.effect.id);
-        let phase = |other: &&CandidateEffect| {
+        let phase = |other: &&WorkingCandidate| {
             other.effect.joint == generic.effect.joint && harmonic(&other.effect.id) == order
         };
         match order {
@@ -193,7 +193,7 @@ fn forms<'a>(
 }
 
 /// Returns whether a library effect with a positive statistic has nearly the signature of this form.
-fn is_listed(form: &Form<'_>, named: &[CandidateEffect], alike: f64, tangent: &Tangent) -> bool {
+fn is_listed(form: &Form<'_>, named: &[WorkingCandidate], alike: f64, tangent: &Tangent) -> bool {
     let mut spoken = named
         .iter()
         .filter(|one| one.statistic() > 0.0 && one.signature.ncols() > 0);

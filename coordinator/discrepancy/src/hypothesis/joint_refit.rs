@@ -3,7 +3,7 @@
 //! Where two or three effects act, each alone may explain less than a different effect that resembles their
 //! sum. All pairs and triples are evaluated on the projected linear system; the best are refitted with every
 //! unknown free, and the refits decide.
-use crate::hypothesis::candidate::CandidateEffect;
+use crate::hypothesis::candidate::WorkingCandidate;
 use crate::laboratory::{Laboratory, Stage};
 use crate::linear::subset::{Subset, Subsets};
 use crate::model::experiments::Experiments;
@@ -32,11 +32,11 @@ pub(crate) struct JointRefit {
 pub(crate) async fn joint_refits<L: Laboratory>(
     experiments: &mut Experiments<'_, L>,
     fit: &Fit,
-    suspects: &[CandidateEffect],
+    suspects: &[WorkingCandidate],
     most: usize,
 ) -> Result<Vec<JointRefit>, L::Error> {
     let able = suspects.iter().filter(|s| s.signature.ncols() > 0);
-    let able: Vec<&CandidateEffect> = able.collect();
+    let able: Vec<&WorkingCandidate> = able.collect();
     let signatures = able
         .iter()
         .map(|own| (&own.signature, positive(&own.effect)));
@@ -65,7 +65,7 @@ pub(crate) async fn joint_refits<L: Laboratory>(
         );
     }
     let members = |subset: &Subset| {
-        let mut own: Vec<&CandidateEffect> = subset.members.iter().map(|&k| able[k]).collect();
+        let mut own: Vec<&WorkingCandidate> = subset.members.iter().map(|&k| able[k]).collect();
         own.sort_by(|a, b| b.statistic().total_cmp(&a.statistic()));
         own.into_iter().map(|own| own.effect.id.clone()).collect()
     };
@@ -82,7 +82,7 @@ pub(crate) async fn joint_refits<L: Laboratory>(
 
 /// Returns the start of a joint refit: the parameters of a fit, with all effects of a combination added at
 /// their jointly estimated sizes and individually best shapes.
-fn started(fit: &Fit, able: &[&CandidateEffect], subset: &Subset) -> Point {
+fn started(fit: &Fit, able: &[&WorkingCandidate], subset: &Subset) -> Point {
     let mut estimates = subset.sizes.iter();
     let members = subset.members.iter().map(|&k| able[k]);
     members.fold(fit.point(), |point, one| {

@@ -1,20 +1,25 @@
 //! Round of hypothesis tests: tests and refits of all candidate effects on one model, and the decision drawn
 //! from them.
-use crate::hypothesis::candidate::CandidateEffect;
+use crate::hypothesis::candidate::{CandidateEffect, WorkingCandidate};
 use crate::hypothesis::refit::Refitted;
 use crate::linear::score::{chi_squared_tail, family_wise};
-use crate::model::fit::Fit;
+use crate::model::fit::{Fit, FitSummary};
+use nalgebra::DMatrix;
+use serde::{Deserialize, Serialize};
+
+/// Round with its fits and signatures, as later steps of the diagnosis need it.
+pub(crate) type WorkingRound = Round<Fit, DMatrix<f64>>;
 
 /// Round of hypothesis tests in a diagnosis: tests of all candidate effects, refits of the likeliest, and the
 /// decision.
-#[derive(Clone, Debug)]
-pub struct Round {
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Round<F = FitSummary, S = f64> {
     /// Tests of all named effects, in the library's order.
-    pub candidates: Vec<CandidateEffect>,
+    pub candidates: Vec<CandidateEffect<S>>,
     /// Tests of the generic forces, with which the named effects are compared.
-    pub generics: Vec<CandidateEffect>,
+    pub generics: Vec<CandidateEffect<S>>,
     /// Refits of the likeliest candidate effects, in descending order of their log evidence.
-    pub refits: Vec<Refitted>,
+    pub refits: Vec<Refitted<F>>,
     /// Log evidence of the current model, without a further effect.
     pub null_evidence: f64,
     /// Dispersion of the best model, by which differences of log evidences are divided.
@@ -39,13 +44,20 @@ pub struct Round {
     pub reason: Option<String>,
 }
 
-impl Round {
+impl<F, S> Round<F, S> {
+    /// Returns a log evidence relative to the current model, divided by the dispersion (nats).
+    pub fn nats(&self, log_evidence: f64) -> f64 {
+        (log_evidence - self.null_evidence) / self.dispersion
+    }
+}
+
+impl WorkingRound {
     /// Creates a round from its tests and refits, and ranks the refits relative to the current model.
     pub(crate) fn new(
         current: &Fit,
-        suspects: Vec<CandidateEffect>,
-        generics: Vec<CandidateEffect>,
-        refits: Vec<Refitted>,
+        suspects: Vec<WorkingCandidate>,
+        generics: Vec<WorkingCandidate>,
+        refits: Vec<Refitted<Fit>>,
     ) -> Self {
         let mut round = Self {
             candidates: suspects,
@@ -66,9 +78,29 @@ impl Round {
         round
     }
 
-    /// Returns a log evidence relative to the current model, divided by the dispersion (nats).
-    pub fn nats(&self, log_evidence: f64) -> f64 {
-        (log_evidence - self.null_evidence) / self.dispersion
+    /// Returns the round as reports read it: with summaries of its fits and signatures.
+    pub(crate) fn summary(self) -> Round {
+        let tests = |all: Vec<WorkingCandidate>| all.into_iter().map(WorkingCandidate::summary);
+        let refits = self.refits.into_iter().map(|own| Refitted {
+            id: own.id,
+            fit: own.fit.summary(),
+            log_evidence: own.log_evidence,
+        });
+        Round {
+            candidates: tests(self.candidates).collect(),
+            generics: tests(self.generics).collect(),
+            refits: refits.collect(),
+            null_evidence: self.null_evidence,
+            dispersion: self.dispersion,
+            misfit: self.misfit,
+            p_value: self.p_value,
+            set: self.set,
+            added: self.added,
+            trace: self.trace,
+            ranked: self.ranked,
+            together: self.together,
+            reason: self.reason,
+        }
     }
 
     /// Returns the fit with the likeliest effect if that is no more than a trace.

@@ -8,7 +8,7 @@
 //! p-value accounts for the number of tries. An effect with a threshold (a clearance, an overflow) does
 //! nothing at one size and much at another; a non-linear effect is therefore tested on a ladder of sizes over
 //! its whole range. Each rung counts as a try and is a possible start of a refit.
-use crate::hypothesis::candidate::CandidateEffect;
+use crate::hypothesis::candidate::WorkingCandidate;
 use crate::laboratory::Laboratory;
 use crate::linear::score::{Score, score};
 use crate::linear::tangent::Tangent;
@@ -78,7 +78,7 @@ pub async fn examine<L: Laboratory>(
     experiments: &mut Experiments<'_, L>,
     fit: &Fit,
     effects: &[EffectDescriptor],
-) -> Result<Vec<CandidateEffect>, L::Error> {
+) -> Result<Vec<WorkingCandidate>, L::Error> {
     let tangent = fit.tangent();
     let mut probes = plan(effects);
     differentiate(experiments, fit, effects, &mut probes).await?;
@@ -349,7 +349,7 @@ fn judge(
     probes: &[Probe],
     residual: &DVector<f64>,
     tangent: &Tangent,
-) -> CandidateEffect {
+) -> WorkingCandidate {
     let positive = positive(effect);
     let own: Vec<&Probe> = probes.iter().filter(|p| p.effect == k).collect();
     let mut best: Option<(Score, &[&Probe], DMatrix<f64>)> = None;
@@ -397,7 +397,7 @@ fn judge(
     }
     let linear = rungs.is_empty();
     rungs.sort_by(|a, b| a.0.total_cmp(&b.0));
-    CandidateEffect {
+    WorkingCandidate {
         effect: effect.clone(),
         score,
         start,

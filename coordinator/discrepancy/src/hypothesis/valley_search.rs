@@ -10,7 +10,7 @@ use crate::baseline::session::Session;
 use crate::baseline::{global_start, narrow_minimum};
 use crate::hypothesis::low_orders;
 use crate::hypothesis::refit::Refitted;
-use crate::hypothesis::round::Round;
+use crate::hypothesis::round::WorkingRound;
 use crate::laboratory::{Laboratory, Stage};
 use crate::model::fit::Fit;
 use crate::model::unknowns::Point;
@@ -45,7 +45,7 @@ struct Found {
 pub(crate) async fn search<L: Laboratory>(
     session: &mut Session<'_, L>,
     current: &Fit,
-    round: &mut Round,
+    round: &mut WorkingRound,
 ) -> Result<bool, L::Error> {
     let lost = session.inputs.thresholds.valley;
     let genes = current.model.space.dimension();
@@ -91,7 +91,7 @@ pub(crate) async fn search<L: Laboratory>(
 async fn deeper<L: Laboratory>(
     session: &mut Session<'_, L>,
     current: &Fit,
-    round: &mut Round,
+    round: &mut WorkingRound,
 ) -> Result<(), L::Error> {
     for _ in 0..DEEPER {
         let mut found = Vec::new();
@@ -116,7 +116,7 @@ async fn deeper<L: Laboratory>(
 async fn from_low_orders<L: Laboratory>(
     session: &mut Session<'_, L>,
     current: &Fit,
-    round: &mut Round,
+    round: &mut WorkingRound,
 ) -> Result<Vec<Found>, L::Error> {
     let effects: Vec<EffectDescriptor> =
         round.candidates.iter().map(|s| s.effect.clone()).collect();
@@ -151,18 +151,18 @@ async fn from_low_orders<L: Laboratory>(
 }
 
 /// Returns the indices of the likeliest refits whose dispersion exceeds a given value.
-fn leaders(round: &Round, bound: f64) -> Vec<usize> {
-    let gain = |refit: &Refitted| refit.log_evidence - round.null_evidence;
+fn leaders(round: &WorkingRound, bound: f64) -> Vec<usize> {
+    let gain = |refit: &Refitted<Fit>| refit.log_evidence - round.null_evidence;
     let best = round.refits.first().map_or(0.0, gain);
-    let likely = |refit: &Refitted| gain(refit) > 0.0 && gain(refit) > SHARE * best;
-    let leads = |refit: &Refitted| likely(refit) && refit.fit.misfit() > bound;
+    let likely = |refit: &Refitted<Fit>| gain(refit) > 0.0 && gain(refit) > SHARE * best;
+    let leads = |refit: &Refitted<Fit>| likely(refit) && refit.fit.misfit() > bound;
     (0..round.refits.len().min(LEADERS))
         .filter(|k| leads(&round.refits[*k]))
         .collect()
 }
 
 /// Returns start points that combine the effect of one refit with the unknowns of each other refit.
-fn from_rivals(round: &Round, own: usize, genes: usize) -> Vec<Point> {
+fn from_rivals(round: &WorkingRound, own: usize, genes: usize) -> Vec<Point> {
     let rivals = round.refits.iter().enumerate().filter(|(k, _)| *k != own);
     rivals
         .map(|(_, rival)| crossed(&rival.fit, &round.refits[own].fit, genes))
@@ -179,7 +179,7 @@ fn crossed(genes_of: &Fit, rest_of: &Fit, genes: usize) -> Point {
 async fn settle<L: Laboratory>(
     session: &mut Session<'_, L>,
     current: &Fit,
-    round: &mut Round,
+    round: &mut WorkingRound,
     found: Vec<Found>,
 ) -> Result<(), L::Error> {
     let left = |a: &&Fit, b: &&Fit| a.chi_squared().total_cmp(&b.chi_squared());
@@ -191,10 +191,10 @@ async fn settle<L: Laboratory>(
     }
     let genes = current.model.space.dimension();
     let null = round.null_evidence;
-    let gain = |refit: &Refitted| refit.log_evidence - null;
+    let gain = |refit: &Refitted<Fit>| refit.log_evidence - null;
     let best = round.refits.iter().map(gain).fold(0.0, f64::max);
-    let hopeful = |refit: &&mut Refitted| gain(refit) > HOPEFUL * best;
-    let mut again: Vec<&mut Refitted> = round.refits.iter_mut().filter(hopeful).collect();
+    let hopeful = |refit: &&mut Refitted<Fit>| gain(refit) > HOPEFUL * best;
+    let mut again: Vec<&mut Refitted<Fit>> = round.refits.iter_mut().filter(hopeful).collect();
     let starts = again
         .iter()
         .map(|refit| crossed(&deepest, &refit.fit, genes))
@@ -213,7 +213,7 @@ async fn settle<L: Laboratory>(
 }
 
 /// Replaces a candidate effect's refit by a fit with a smaller residual.
-fn replace(refit: &mut Refitted, fit: Fit) {
+fn replace(refit: &mut Refitted<Fit>, fit: Fit) {
     if fit.chi_squared() < refit.fit.chi_squared() {
         *refit = Refitted::new(refit.id.clone(), fit);
     }

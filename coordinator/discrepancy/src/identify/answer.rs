@@ -5,7 +5,7 @@ use crate::record::noise::NoiseSource;
 use serde::{Deserialize, Serialize};
 
 /// Identifiability of a model's unknowns from a record.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct IdentificationResult {
     /// Fitted values of the unknowns \[declared units\], in the case's order.
     pub genes: Vec<f64>,
@@ -100,7 +100,7 @@ pub enum IntervalEnd {
 
 /// Eigenvector of the Fisher information: a combination of unknowns that is determined independently of all
 /// others.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Direction {
     /// Standard deviation along the direction: decades, or half-widths of the search interval for unknowns on
     /// a linear scale; infinite where the record does not determine the direction.
@@ -112,7 +112,7 @@ pub struct Direction {
 }
 
 /// Component of one unknown in a direction.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct DirectionPart {
     /// Name of the unknown.
     pub name: String,
@@ -121,7 +121,7 @@ pub struct DirectionPart {
 }
 
 /// Predicted curves of all channels under one condition, with 95 % bands.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Band {
     /// Index of the condition in the case.
     pub condition: usize,
@@ -130,7 +130,7 @@ pub struct Band {
 }
 
 /// Predicted curve with its 95 % band.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BandCurve {
     /// Curve at the most likely values of the unknowns.
     pub likeliest: Vec<f64>,
@@ -153,7 +153,7 @@ impl BandCurve {
 }
 
 /// Possible further measurement, and the unknowns that it would determine.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FurtherMeasurement {
     /// Description of the measurement.
     pub measurement: String,
@@ -163,7 +163,7 @@ pub struct FurtherMeasurement {
 }
 
 /// Unknown that a further measurement would determine.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct DeterminedUnknown {
     /// Name of the unknown.
     pub name: String,

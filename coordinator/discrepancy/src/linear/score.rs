@@ -5,10 +5,11 @@
 //! estimate of the wrong sign counts against the effect.
 use crate::linear::tangent::Tangent;
 use nalgebra::{DMatrix, DVector};
+use serde::{Deserialize, Serialize};
 use statrs::distribution::{ChiSquared, ContinuousCDF as _, FisherSnedecor, StudentsT};
 
 /// Result of a score test.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Score {
     /// Test statistic `T^2`.
     pub statistic: f64,

@@ -10,10 +10,10 @@ use crate::linear::evidence::log_determinant;
 use crate::linear::tangent::Tangent;
 use crate::thresholds::{AMBIGUITY_MARGIN, JOINTS};
 use nalgebra::{DMatrix, DVector};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Evidence for a periodic force at one joint.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct JointEvidence {
     /// Name of the joint at which the force acts.
     pub joint: String,
@@ -26,7 +26,7 @@ pub struct JointEvidence {
 }
 
 /// One harmonic of a periodic force.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Harmonic {
     /// Order of the harmonic (cycles per period); 0 for a constant.
     pub order: usize,

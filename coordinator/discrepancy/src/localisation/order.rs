@@ -8,10 +8,11 @@ use crate::record::metric::Metric;
 use crate::record::spectrum::Spectra;
 use nalgebra::{Complex, DVector};
 use search::random::{Phase, Streams};
+use serde::{Deserialize, Serialize};
 use statrs::distribution::{ContinuousCDF as _, FisherSnedecor};
 
 /// Channel and order of the period at which the residual exceeds noise significantly.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Peak {
     /// Index of the channel in the record.
     pub channel: usize,
@@ -24,7 +25,7 @@ pub struct Peak {
 }
 
 /// Map of the residual's power by channel and order of the period, with the significant peaks.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct OrderMap {
     /// Squared modulus of each whitened Fourier coefficient over its mean under noise, by channel and order.
     pub ratio: Vec<Vec<f64>>,

@@ -11,9 +11,10 @@ use crate::model::fit::Fit;
 use crate::record::whitened::WhitenedRecord;
 use crate::thresholds::MAPS;
 use nalgebra::DVector;
+use serde::{Deserialize, Serialize};
 
 /// Maps of the abscissa, orders and joints at which simulation and measurement disagree.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Localisation {
     /// Map of the residual by abscissa and channel.
     pub along: window_test::AlongMap,

@@ -7,6 +7,7 @@ use crate::record::measured::Curves;
 use nalgebra::DMatrix;
 use protocol::announce::EffectDescriptor;
 use search::least_squares::{LeastSquares, Variable};
+use serde::{Deserialize, Serialize};
 use std::sync::{Arc, OnceLock};
 
 /// Model with the final state of its fit.
@@ -25,7 +26,40 @@ pub struct Fit {
     likeliest: OnceLock<Option<(Discrepancy, f64)>>,
 }
 
+/// Fitted model as a diagnosis reports it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FitSummary {
+    /// Values of all unknowns of the case, in the units that the case declares.
+    pub genes: Vec<f64>,
+    /// Fitted values of the searched unknowns, as coordinates of the search space.
+    pub coordinates: Vec<f64>,
+    /// Identifiers of the effects that the model has in addition to those of the case.
+    pub added: Vec<String>,
+    /// Squared length of the whitened residual.
+    pub chi_squared: f64,
+    /// Number of entries of the whitened residual, which is also its expected squared length under noise alone.
+    pub entries: usize,
+    /// Share of the squared residual by which one more step is predicted to lower it.
+    pub predicted_decrease: f64,
+    /// Simulated curves at the fitted point.
+    pub curves: Curves,
+}
+
 impl Fit {
+    /// Returns what reports read of the fit.
+    pub fn summary(&self) -> FitSummary {
+        let x = self.x();
+        FitSummary {
+            genes: self.model.genes(x),
+            coordinates: x[..self.model.space.dimension()].to_vec(),
+            added: self.model.added.iter().map(|own| own.id.clone()).collect(),
+            chi_squared: self.chi_squared(),
+            entries: self.entries(),
+            predicted_decrease: self.search.predicted_decrease(),
+            curves: self.curves.clone(),
+        }
+    }
+
     /// Creates a fit from the final state of its search and the curves there. `smooth` are the waves of the
     /// smooth discrepancy with which it competes, if it does.
     pub fn new(

@@ -9,7 +9,7 @@ pub(crate) mod parameter;
 pub mod probe;
 pub(crate) mod unknowns;
 
-pub use fit::Fit;
+pub use fit::{Fit, FitSummary};
 pub use inactive_unknowns::InactiveUnknowns;
 pub use nuisance_parameter::NuisanceParameter;
 pub use parameter::{absent, at_typical, bounds, shapes, sizes};

@@ -1,12 +1,13 @@
 //! Equal bins of an abscissa, and the values of a whitened curve in them.
 use crate::record::basis::{Basis, ChannelGroup};
 use nalgebra::Complex;
+use serde::{Deserialize, Serialize};
 
 /// Maximum number of bins into which an abscissa is divided.
 pub const BINS: usize = 120;
 
 /// Division of an abscissa into equal bins.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Bins {
     /// Start of the first bin, in the abscissa's unit.
     pub from: f64,

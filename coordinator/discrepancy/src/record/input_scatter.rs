@@ -1,9 +1,10 @@
 //! Errors of a measurement's input that differ from cycle to cycle: directions that no test counts as a
 //! disagreement. The reader of the data sheet maps each to a shift of the abscissa or to an effect of the
 //! library. Errors that are constant over a measurement belong to `nuisance`.
+use serde::{Deserialize, Serialize};
 
 /// Source of scatter between cycles that comes from their input.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum InputScatter {
     /// Shift of a cycle's curves along the abscissa.
     Abscissa {

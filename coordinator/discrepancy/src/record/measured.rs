@@ -2,13 +2,14 @@
 use crate::record::input_scatter::InputScatter;
 use crate::record::nuisance::Nuisance;
 use protocol::case::{Abscissa, Channel};
+use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
 /// Curves of one cycle: channel by channel, in the channel's unit, on its abscissa.
 pub type Curves = Vec<Vec<f64>>;
 
 /// Channel of a measured record.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Recorded {
     /// Index of the simulated curve with which the channel is compared, among the channels of its condition.
     pub curve: usize,
@@ -79,7 +80,7 @@ impl Recorded {
 }
 
 /// Measured record of one working condition.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Record {
     /// Index of the condition in the case.
     pub condition: usize,
@@ -105,7 +106,7 @@ pub struct Split {
 }
 
 /// Statements of a data sheet about a measurement.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Stated {
     /// Errors of the input that differ from cycle to cycle.
     pub input_scatter: Vec<InputScatter>,

@@ -12,11 +12,12 @@ use crate::record::scatter::unexplained;
 use crate::record::spectrum::{Orders, Spectra};
 use crate::thresholds::{STATED, WIDEST};
 use nalgebra::{Complex, DMatrix, DVector};
+use serde::{Deserialize, Serialize};
 
 type C = Complex<f64>;
 
 /// Way in which a record's noise is known.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum NoiseSource {
     /// Measured: estimated from the scatter of several cycles.
     Measured,

@@ -2,9 +2,10 @@
 //! slightly off, friction that is known to be present. Their standard deviations are known beforehand, so
 //! each is a nuisance parameter with a prior in every fit, test and interval, and no discovery while it stays
 //! within its tolerance.
+use serde::{Deserialize, Serialize};
 
 /// Constant error of a measurement with a known standard deviation.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Nuisance {
     /// Identifier of the library's effect that models the error, or name of the channel gain.
     pub id: String,
@@ -36,7 +37,7 @@ impl Nuisance {
 }
 
 /// Way in which a nuisance parameter acts on the compared curves.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Acts {
     /// Acts as the library effect with the same identifier; ignored where the library lacks that effect.
     Effect,

@@ -17,9 +17,10 @@ use crate::record::whitened::WhitenedRecord;
 use crate::validation::gap_closure::{Closed, gap_closure};
 use crate::validation::scoring_metric::ScoringMetric;
 use nalgebra::DMatrix;
+use serde::{Deserialize, Serialize};
 
 /// Gap between record and model on one record, before and after the answer's effects are added.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct GapRow {
     /// Index of the record's working condition in the case.
     pub condition: usize,
@@ -36,7 +37,7 @@ pub struct GapRow {
 }
 
 /// Part of the data on which a gap is counted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum DataRole {
     /// Cycles that were fitted.
     Fitted,

@@ -8,10 +8,10 @@
 //! why the best rejected rival is always shown beside it.
 use crate::record::measured::{Curves, Record, mean_of, power, scatter};
 use search::random::{Phase, Stream, Streams};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Gap before and after an effect is added.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Closed {
     /// Gap of the recalibrated model without the effect.
     pub before: f64,

@@ -38,9 +38,10 @@ use crate::validation::compare::{DataRole, ValidationRecord};
 use crate::validation::scoring_metric::divide_by_student_deviation;
 use nalgebra::{DMatrix, DVector};
 use search::least_squares::{Linearized, Variable};
+use serde::{Deserialize, Serialize};
 
 /// Predictive score of an answer on one record that took no part in the fit.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Prediction {
     /// Index of the record's working condition in the case.
     pub condition: usize,

@@ -136,8 +136,8 @@ pub(crate) fn inputs(
 
 /// Returns the identifiers of the effects that a diagnosis added.
 fn added(answer: &Diagnosis) -> Vec<&str> {
-    let added = answer.after.as_ref().map(|fit| &fit.model.added);
-    added.into_iter().flatten().map(|e| &*e.id).collect()
+    let added = answer.after.as_ref().map(|fit| &fit.added);
+    added.into_iter().flatten().map(String::as_str).collect()
 }
 
 #[test]

@@ -212,7 +212,7 @@ fn what_is_held_out_is_compared_at_the_end() {
         assert_eq!(answer.effects[0].id, "hardening", "{said}");
         assert_eq!(parts(answer), all);
         // only the first channel is fitted
-        let entries = answer.after.as_ref().expect("a model").entries();
+        let entries = answer.after.as_ref().expect("a model").entries;
         assert_eq!(entries, SAMPLES - 1);
         let unseen = &answer.rows[2];
         assert!(
@@ -248,7 +248,7 @@ fn an_unknown_that_is_off_is_a_suspect() {
     );
     assert!(answer.limits.iter().any(|limit| limit.id == "softening"));
     // held at nothing without it: only two are fitted
-    assert_eq!(answer.before.expect("a model").x().len(), 2);
+    assert_eq!(answer.before.expect("a model").coordinates.len(), 2);
 }
 
 /// Checks a log whose noise size is stated but whose correlation is not: slow noise counts as a discrepancy,

@@ -5,7 +5,7 @@ use crate::trial::{MACHINE, Setup, diagnose_usual, diagnosed, line, say};
 use crate::truth::{ALL, Truth};
 use discrepancy::diagnose::{Diagnosis, Round};
 use discrepancy::laboratory::Stage;
-use discrepancy::model::Fit;
+use discrepancy::model::FitSummary;
 use discrepancy::record::noise::NoiseSource;
 use discrepancy::validation::compare::DataRole;
 use discrepancy::verdict::Verdict;
@@ -178,7 +178,7 @@ fn withheld(answer: &Diagnosis) {
     let claims = |round: &Round| round.added.is_some() || !round.set.is_empty();
     assert!(!answer.rounds.iter().any(claims), "{}", line(answer));
     assert!(answer.rival.is_none());
-    let added = |fit: &Fit| !fit.model.added.is_empty();
+    let added = |fit: &FitSummary| !fit.added.is_empty();
     assert!(
         !answer.after.as_ref().is_some_and(added),
         "{}",

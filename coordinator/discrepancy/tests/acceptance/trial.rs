@@ -129,9 +129,10 @@ pub(crate) fn diagnose_usual(truth: &Truth) -> Diagnosis {
 
 /// Summarises a diagnosis in one line, for failure messages and surveys.
 pub(crate) fn line(diagnosis: &Diagnosis) -> String {
-    let base = diagnosis.before.as_ref().map_or(f64::NAN, |fit| {
-        fit.chi_squared() / fit.search.best().residual.len() as f64
-    });
+    let base = diagnosis
+        .before
+        .as_ref()
+        .map_or(f64::NAN, |fit| fit.chi_squared / fit.entries as f64);
     let rounds: Vec<String> = diagnosis
         .rounds
         .iter()

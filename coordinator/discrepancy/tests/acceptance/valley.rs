@@ -195,8 +195,7 @@ fn diagnosed(truth: Ringing, valley: f64) -> Diagnosis {
 /// (decades).
 fn end(diagnosis: &Diagnosis) -> (f64, f64) {
     let fit = diagnosis.after.as_ref().expect("a model");
-    let n = fit.search.best().residual.len();
-    (fit.chi_squared() / n as f64, fit.x()[0])
+    (fit.chi_squared / fit.entries as f64, fit.coordinates[0])
 }
 
 /// Checks that the valley search leads from a fit outside the valley into it, and finds nothing better from

@@ -38,7 +38,12 @@ pub fn starts(subject: &DiagnosisInput<'_>) -> Vec<(String, f64)> {
 }
 
 fn entry(subject: &DiagnosisInput<'_>, found: &Estimate, round: u32, set: &[String]) -> CaseEffect {
-    let descriptor = subject.library.iter().find(|effect| effect.id == found.id);
+    let descriptor = subject
+        .diagnosed
+        .result
+        .library
+        .iter()
+        .find(|effect| effect.id == found.id);
     let parameters = found.parameters.iter().map(|own| {
         let (value, [low, high]) = (own.value, own.interval);
         // a value at its bound has no interval around it

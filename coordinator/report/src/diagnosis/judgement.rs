@@ -125,7 +125,7 @@ fn before_refit(round: &Round, suspect: &CandidateEffect) -> String {
     let Some(score) = &suspect.score else {
         return "could not be simulated here: nothing is said about it".to_owned();
     };
-    if suspect.signature.norm_squared() <= 0.0 {
+    if suspect.signature <= 0.0 {
         return "dropped: it changes nothing at any size that was tried".to_owned();
     }
     if !suspect.linear {

@@ -1,26 +1,22 @@
 //! Input data of a diagnosis report.
 use crate::data::Origin;
 use discrepancy::diagnose::{Diagnosis, Estimate};
+use discrepancy::laboratory::Stage;
 use discrepancy::record::Record;
 use protocol::announce::{EffectDescriptor, ParameterDescriptor};
 use protocol::case::Case;
-use study::DiagnosisResult;
+use std::time::Duration;
+use study::RecordedDiagnosis;
 
 /// Finished diagnosis with all data that its report refers to.
 #[derive(Clone, Debug)]
 pub struct DiagnosisInput<'a> {
     /// Case that was diagnosed.
     pub case: &'a Case,
-    /// Measured records of the case, cycle by cycle.
-    pub records: &'a [Record],
-    /// Candidate effects that were considered, including generic forces without a physical cause.
-    pub library: &'a [EffectDescriptor],
-    /// Result of the diagnosis, with the cost of each of its stages.
-    pub diagnosed: &'a DiagnosisResult,
+    /// Result of the diagnosis, with its records and what it cost.
+    pub diagnosed: &'a RecordedDiagnosis,
     /// Provenance of the diagnosis (run, program, digest).
     pub origin: Origin,
-    /// Remarks about the case and its records.
-    pub notes: &'a [String],
     /// Wall time of the diagnosis, over all sessions (s).
     pub wall_s: f64,
 }
@@ -28,12 +24,12 @@ pub struct DiagnosisInput<'a> {
 impl<'a> DiagnosisInput<'a> {
     /// Returns the diagnosis itself, without the cost of its stages.
     pub(super) const fn diagnosis(&self) -> &'a Diagnosis {
-        &self.diagnosed.diagnosis
+        &self.diagnosed.result.diagnosis
     }
 
     /// Returns the measured record of a condition; `None` if there is none with at least one cycle.
     pub(super) fn record(&self, condition: usize) -> Option<&'a Record> {
-        let mut records = self.records.iter();
+        let mut records = self.diagnosed.records.iter();
         records.find(|record| record.condition == condition && !record.cycles.is_empty())
     }
 
@@ -42,9 +38,19 @@ impl<'a> DiagnosisInput<'a> {
         self.record(self.case.objective.condition)
     }
 
+    /// Returns the slot time of the simulations of a stage, summed.
+    pub fn busy(&self, stage: Stage) -> Duration {
+        let times = &self.diagnosed.slot_times;
+        times.get(stage.name()).copied().unwrap_or_default()
+    }
+
     /// Returns the description that workers give of an effect.
     pub(super) fn effect(&self, id: &str) -> Option<&'a EffectDescriptor> {
-        self.library.iter().find(|effect| effect.id == id)
+        self.diagnosed
+            .result
+            .library
+            .iter()
+            .find(|effect| effect.id == id)
     }
 
     /// Returns the description that workers give of a parameter of an effect.

@@ -74,6 +74,7 @@ fn what_is_added_is_read_back_by_a_case_file() {
         let found: Vec<&String> = file.effects.iter().map(|effect| &effect.id).collect();
         let added: Vec<&String> = made
             .diagnosed
+            .result
             .diagnosis
             .rounds
             .iter()
@@ -117,7 +118,7 @@ fn a_name_stands_with_its_size_its_rival_and_what_to_do() {
 #[test]
 fn an_answer_in_part_says_what_is_left_in_its_first_sentence() {
     let mut made = suspicion::diagnosis(Verdict::Named);
-    let own = &mut made.diagnosed.diagnosis;
+    let own = &mut made.diagnosed.result.diagnosis;
     own.reason = Some("explains 71 % of the gap; 29 % remain, most of it at gauge 3".to_owned());
     own.remainder.left = vec![Left {
         condition: 0,
@@ -139,7 +140,7 @@ fn an_answer_in_part_says_what_is_left_in_its_first_sentence() {
 #[test]
 fn a_discrepancy_and_a_trace_are_shown() {
     let mut made = suspicion::diagnosis(Verdict::Named);
-    let own = &mut made.diagnosed.diagnosis;
+    let own = &mut made.diagnosed.result.diagnosis;
     let channels: Vec<Channel> = own.rows[0]
         .after
         .iter()
@@ -221,8 +222,8 @@ fn every_suspect_is_told_why_it_was_kept_or_dropped() {
 #[test]
 fn parameters_that_would_have_to_wander_are_shown_with_their_values() {
     let made = suspicion::diagnosis(Verdict::Named);
-    let before = made.diagnosed.diagnosis.before.as_ref().unwrap();
-    let value = before.model.genes(before.x())[0];
+    let before = made.diagnosed.result.diagnosis.before.as_ref().unwrap();
+    let value = before.genes[0];
     let whole = page(&made).replace('\u{a0}', " ");
     let (_, section) = whole.split_once("would have to wander</h2>").unwrap();
     let (section, _) = section.split_once("</section>").unwrap();

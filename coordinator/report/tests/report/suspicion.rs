@@ -12,15 +12,14 @@ use discrepancy::linear::score::Score;
 use discrepancy::localisation::parameter_drift::{ParameterDrift, ParameterShift, RecordPart};
 use discrepancy::localisation::summary::Localisation;
 use discrepancy::localisation::{joint, order, window_test};
-use discrepancy::model::Fit;
-use discrepancy::model::FittedModel;
+use discrepancy::model::{Fit, FitSummary, FittedModel};
 use discrepancy::record::noise::NoiseSource;
 use discrepancy::record::{Curves, Record, Recorded, Stated};
 use discrepancy::validation::compare::{DataRole, GapRow};
 use discrepancy::validation::gap_closure::gap_closure;
 use discrepancy::validation::predictive::Prediction;
 use discrepancy::verdict::Verdict;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 use protocol::announce::{EffectDescriptor, ParameterDescriptor, Place, Role, Sign};
 use protocol::case::Case;
 use protocol::pumping_unit::Sensor;
@@ -28,8 +27,9 @@ use report::Origin;
 use report::diagnosis::DiagnosisInput;
 use search::least_squares::{LeastSquares, LeastSquaresSettings};
 use search::space::Space;
+use std::collections::BTreeMap;
 use std::time::Duration;
-use study::{DiagnosisResult, StageCost};
+use study::{DiagnosisResult, RecordedDiagnosis, StageCost};
 
 /// Number of values in the whitened synthetic residual.
 const ENTRIES: usize = 40;
@@ -39,18 +39,13 @@ const GRID: usize = 360;
 /// Owned sample data of a diagnosis, borrowed by the input of the diagnosis report that is made from them.
 pub(crate) struct SampleDiagnosis {
     pub(crate) case: Case,
-    pub(crate) records: Vec<Record>,
-    pub(crate) library: Vec<EffectDescriptor>,
-    pub(crate) diagnosed: DiagnosisResult,
-    pub(crate) notes: Vec<String>,
+    pub(crate) diagnosed: RecordedDiagnosis,
 }
 
 impl SampleDiagnosis {
     pub(crate) fn subject(&self) -> DiagnosisInput<'_> {
         DiagnosisInput {
             case: &self.case,
-            records: &self.records,
-            library: &self.library,
             diagnosed: &self.diagnosed,
             origin: Origin {
                 program: "horsehead 0.1.0".to_owned(),
@@ -61,7 +56,6 @@ impl SampleDiagnosis {
                 seed: Some(1),
                 ..Origin::default()
             },
-            notes: &self.notes,
             wall_s: 412.0,
         }
     }
@@ -137,7 +131,7 @@ fn library() -> Vec<EffectDescriptor> {
 
 /// Fits the linear model `residual = constant - A x`, with the genes and the parameters of the added effects
 /// as unknowns; `size` scales the constant part of the residual.
-fn fit(case: &Case, added: &[&EffectDescriptor], size: f64, curves: Curves) -> Fit {
+fn fit(case: &Case, added: &[&EffectDescriptor], size: f64, curves: Curves) -> FitSummary {
     let space = Space::new(&case.unknowns).expect("the sample's genes are sound");
     let mut model = FittedModel::plain(space);
     model.added.extend(added.iter().copied().cloned());
@@ -159,7 +153,7 @@ fn fit(case: &Case, added: &[&EffectDescriptor], size: f64, curves: Curves) -> F
         }
         search.absorb(plan.iter().map(|x| Some(residual(x))).collect());
     }
-    Fit::new(model, (search, curves), None)
+    Fit::new(model, (search, curves), None).summary()
 }
 
 const CHANNELS: [Sensor; 4] = [
@@ -259,7 +253,7 @@ fn suspect(
             absorbed,
         }),
         start: vec![0.0; effect.parameters.len()],
-        signature: DMatrix::repeat(ENTRIES, usize::from(able), 0.1),
+        signature: 0.01 * f64::from(u8::from(able)) * ENTRIES as f64,
         taken: vec![vec![0.0; effect.parameters.len()]; usize::from(able)],
         tries: 3,
     }
@@ -418,17 +412,27 @@ fn estimate(effect: &EffectDescriptor, value: f64, ln_evidence: f64) -> Estimate
 }
 
 fn accounts() -> Vec<(Stage, StageCost)> {
-    let account = |experiments, failed, seconds| StageCost {
+    let account = |experiments, failed| StageCost {
         experiments,
         failed,
         batches: 7,
-        wall: Duration::from_secs(seconds),
     };
     vec![
-        (Stage::Recalibrate, account(120, 0, 60)),
-        (Stage::Test, account(90, 2, 40)),
-        (Stage::Refit, account(310, 5, 150)),
+        (Stage::Recalibrate, account(120, 0)),
+        (Stage::Test, account(90, 2)),
+        (Stage::Refit, account(310, 5)),
     ]
+}
+
+fn slot_times() -> BTreeMap<String, Duration> {
+    let times = [
+        (Stage::Recalibrate, 60),
+        (Stage::Test, 40),
+        (Stage::Refit, 150),
+    ];
+    let named =
+        times.map(|(stage, seconds)| (stage.name().to_owned(), Duration::from_secs(seconds)));
+    named.into()
 }
 
 /// Builds the estimate of a gauge gain error within its assumed tolerance.
@@ -442,6 +446,15 @@ fn reads_high() -> NuisanceEstimate {
         tolerance: 0.005,
         within: true,
         assumed: true,
+    }
+}
+
+/// Builds an effect that recalibration absorbs.
+fn absorbed() -> Absorbed {
+    Absorbed {
+        id: "post_compliance".to_owned(),
+        share: 0.99,
+        measurement: "kb1 known from a test of its own, or a sensor at the saddle".to_owned(),
     }
 }
 
@@ -513,11 +526,7 @@ pub(crate) fn diagnosis(verdict: Verdict) -> SampleDiagnosis {
         preflight_after: added.then(preflight),
         limits: limits(&library),
         nuisances: vec![reads_high()],
-        absorbed: vec![Absorbed {
-            id: "post_compliance".to_owned(),
-            share: 0.99,
-            measurement: "kb1 known from a test of its own, or a sensor at the saddle".to_owned(),
-        }],
+        absorbed: vec![absorbed()],
         look_alikes: vec![IndistinguishablePair {
             effects: ["pin_clearance".to_owned(), "gauge_drift".to_owned()],
             cycles: 2.4,
@@ -537,13 +546,16 @@ pub(crate) fn diagnosis(verdict: Verdict) -> SampleDiagnosis {
     };
     SampleDiagnosis {
         case,
-        records,
-        library,
-        diagnosed: DiagnosisResult {
-            diagnosis,
-            accounts: accounts(),
+        diagnosed: RecordedDiagnosis {
+            result: DiagnosisResult {
+                diagnosis,
+                accounts: accounts(),
+                library,
+                notes: vec!["The card of <5rpm> is no simultaneous measurement.".to_owned()],
+            },
+            records,
+            slot_times: slot_times(),
         },
-        notes: vec!["The card of <5rpm> is no simultaneous measurement.".to_owned()],
     }
 }
 
@@ -570,15 +582,12 @@ fn wander(p_value: f64) -> ParameterDrift {
 /// Builds an ambiguous diagnosis: the first round added one effect, the second an ambiguity set of two.
 pub(crate) fn two_rounds() -> SampleDiagnosis {
     let mut made = diagnosis(Verdict::Ambiguous);
-    let ids: Vec<String> = made
-        .library
-        .iter()
-        .map(|effect| effect.id.clone())
-        .collect();
-    let again = estimate(&made.library[2], 0.3, 12.0);
+    let library = &made.diagnosed.result.library;
+    let ids: Vec<String> = library.iter().map(|effect| effect.id.clone()).collect();
+    let again = estimate(&library[2], 0.3, 12.0);
     let Diagnosis {
         rounds, effects, ..
-    } = &mut made.diagnosed.diagnosis;
+    } = &mut made.diagnosed.result.diagnosis;
     let mut second = rounds[0].clone();
     rounds[0].set = vec![ids[0].clone()];
     second.refits.remove(0);
@@ -593,8 +602,8 @@ pub(crate) fn two_rounds() -> SampleDiagnosis {
 /// is suspected, but none is reported as found.
 pub(crate) fn assumed() -> SampleDiagnosis {
     let mut made = diagnosis(Verdict::Unresolved);
-    let suspect = estimate(&made.library[0], 0.8, 596.9);
-    let diagnosis = &mut made.diagnosed.diagnosis;
+    let suspect = estimate(&made.diagnosed.result.library[0], 0.8, 596.9);
+    let diagnosis = &mut made.diagnosed.result.diagnosis;
     diagnosis.noise = NoiseSource::Stated;
     diagnosis.effects = vec![suspect];
     made
@@ -603,13 +612,11 @@ pub(crate) fn assumed() -> SampleDiagnosis {
 /// Builds a diagnosis that stopped at once, with a reason and no other data.
 pub(crate) fn stopped(reason: &str) -> SampleDiagnosis {
     let mut made = diagnosis(Verdict::Unresolved);
-    made.records = vec![record(0, 1)];
-    made.diagnosed = DiagnosisResult {
-        diagnosis: Diagnosis {
-            noise: NoiseSource::Stated,
-            ..Diagnosis::unresolved(reason)
-        },
-        accounts: Vec::new(),
+    made.diagnosed.records = vec![record(0, 1)];
+    made.diagnosed.result.accounts.clear();
+    made.diagnosed.result.diagnosis = Diagnosis {
+        noise: NoiseSource::Stated,
+        ..Diagnosis::unresolved(reason)
     };
     made
 }

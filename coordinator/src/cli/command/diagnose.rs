@@ -104,18 +104,13 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     };
     let manifest = target.manifest(seed, settings)?;
     let run = Run::begin(&path, manifest, target.loaded.case.clone())?;
-    let found = session.work(&run, async |bus, stop| {
+    session.work(&run, async |bus, stop| {
         let mut display = StageDisplay::new();
         let found = diagnose(bus, &run.manifest, &target.loaded, &mut display, stop).await;
         display.clear();
         found
     })?;
-    let answer = DiagnosisOutput {
-        run: &run,
-        loaded: &target.loaded,
-        found: &found,
-        wall_s: session.wall_s(&run),
-    };
+    let answer = DiagnosisOutput::read(&run, session.wall_s(&run))?;
     let object = answer.write()?;
     let file = target.folder.join("case.toml");
     if arguments.add && has_own {

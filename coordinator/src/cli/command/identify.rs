@@ -76,11 +76,11 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     };
     let manifest = target.manifest(seed, settings)?;
     let run = Run::begin(&path, manifest, target.loaded.case.clone())?;
-    let found = session.work(&run, async |bus, stop| {
+    session.work(&run, async |bus, stop| {
         let mut display = StageDisplay::new();
         let found = identify(bus, &run.manifest, &target.loaded, &mut display, stop).await;
         display.clear();
         found
     })?;
-    show(&run, &found, session.wall_s(&run), arguments.output.output)
+    show(&run, session.wall_s(&run), arguments.output.output)
 }

@@ -8,7 +8,7 @@ use super::{
 use crate::cli::run::{
     bus,
     folder::{MANIFEST, RESULT, RunFolder},
-    kind::{AnyRun, ReplayedRun, restore_times},
+    kind::AnyRun,
     manifest::{CALIBRATE, DIAGNOSE, IDENTIFY},
 };
 use dashboard::{Board, PageReader, Pages};
@@ -242,13 +242,8 @@ impl Shared {
             has_begun: false,
         };
         let mut evaluator = FollowingEvaluator::new(&self.path.join(journal::FILE), &mut observer);
-        let mut replayed =
-            bus::block_on(async { run.replay(&mut evaluator, &mut watch, &mut stop).await })?;
-        let wall_s = self.wall_s()?;
-        if let ReplayedRun::Diagnosis(run, _, found) = &mut replayed {
-            restore_times(run, found)?;
-        }
-        replayed.report(wall_s)
+        bus::block_on(async { run.replay(&mut evaluator, &mut watch, &mut stop).await })?;
+        run.report(self.wall_s()?)
     }
 
     /// Follows the journal of a run whose study is not repeated, such as a sweep or requests of another program,

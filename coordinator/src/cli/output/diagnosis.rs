@@ -7,34 +7,42 @@ use crate::cli::{
     argument::output::Output,
     run::{
         command_line::quote_path,
-        diagnosis::{Diagnosis, Found},
+        diagnosis::{Diagnosis, recorded},
         folder::{GENES, RESULT},
     },
 };
 use ::report::{diagnosis as report, text};
-use case::{CaseEffect, Loaded, Overrides, append_effects, load_with_notes, write_starts};
+use case::{CaseEffect, Overrides, append_effects, load_with_notes, write_starts};
 use std::path::Path;
+use study::RecordedDiagnosis;
 
-/// Finished diagnosis with the data that its output files need.
+/// Finished diagnosis, read from its journal.
 pub(crate) struct DiagnosisOutput<'a> {
-    pub(crate) run: &'a Diagnosis,
-    /// Case with the measured cycles of its records.
-    pub(crate) loaded: &'a Loaded,
-    pub(crate) found: &'a Found,
+    run: &'a Diagnosis,
+    recorded: RecordedDiagnosis,
     /// Wall time of the run over all its sessions (s).
-    pub(crate) wall_s: f64,
+    wall_s: f64,
 }
 
-impl DiagnosisOutput<'_> {
+impl<'a> DiagnosisOutput<'a> {
+    /// Reads a finished diagnosis whose sessions took `wall_s` seconds in total.
+    ///
+    /// # Errors
+    /// As [`recorded`].
+    pub(crate) fn read(run: &'a Diagnosis, wall_s: f64) -> anyhow::Result<Self> {
+        Ok(Self {
+            run,
+            recorded: recorded(run)?,
+            wall_s,
+        })
+    }
+
     /// Builds the data of the diagnosis's report.
     pub(crate) fn subject(&self) -> anyhow::Result<report::DiagnosisInput<'_>> {
         Ok(report::DiagnosisInput {
-            case: &self.loaded.case,
-            records: &self.loaded.cycles,
-            library: &self.found.library,
-            diagnosed: &self.found.diagnosed,
+            case: &self.run.case,
+            diagnosed: &self.recorded,
             origin: self.run.origin(String::new())?,
-            notes: &self.found.notes,
             wall_s: self.wall_s,
         })
     }
@@ -42,17 +50,16 @@ impl DiagnosisOutput<'_> {
     /// Writes the fitted parameters and effects of the final model as a gene file: simulating them reproduces the
     /// diagnosis's "after" curves, or where no effect was found those of the recalibrated model.
     fn write_genes(&self) -> anyhow::Result<()> {
-        let diagnosis = &self.found.diagnosed.diagnosis;
+        let diagnosis = &self.recorded.result.diagnosis;
         let Some(fit) = diagnosis.after.as_ref().or(diagnosis.before.as_ref()) else {
             return Ok(());
         };
         let about = format!("Parameters of {}", self.run.folder.path().display());
-        let genes = fit.model.genes(fit.x());
         let found = report::effects(&self.subject()?);
-        let effects = [&self.loaded.effects[..], &found].concat();
+        let effects = [&CaseEffect::all_of(&self.run.case)[..], &found].concat();
         self.run
             .folder
-            .write_genes(&self.loaded.case, &genes, &effects, &about)
+            .write_genes(&self.run.case, &fit.genes, &effects, &about)
     }
 
     /// Writes the result files of the diagnosis into the run folder and returns the object for `--output

@@ -5,23 +5,20 @@ use crate::cli::{
     argument::output::Output,
     run::{
         folder::RESULT,
-        identification::{Found, Identification},
+        identification::{Identification, recorded},
     },
 };
 use ::report::{identification as report, text};
 use case::CaseEffect;
+use study::IdentificationStudy;
 
-/// Writes the result files of a finished identifiability analysis and prints its result.
+/// Reads the result of a finished identifiability analysis from its run folder, writes its files and prints it.
 ///
 /// # Errors
-/// If a file cannot be written.
-pub(crate) fn show(
-    run: &Identification,
-    found: &Found,
-    wall_s: f64,
-    output: Output,
-) -> anyhow::Result<()> {
-    let subject = subject(run, found, wall_s)?;
+/// As [`recorded`], and if a file cannot be written.
+pub(crate) fn show(run: &Identification, wall_s: f64, output: Output) -> anyhow::Result<()> {
+    let found = recorded(run)?;
+    let subject = subject(run, &found, wall_s)?;
     let about = format!("Parameters of {}", run.folder.path().display());
     run.folder.write_genes(
         &run.case,
@@ -33,7 +30,7 @@ pub(crate) fn show(
     for page in files.iter().take(1) {
         terminal::tell(&format!("open {}", page.display()));
     }
-    let object = object(&subject, &found.accounts);
+    let object = object(&subject, found.simulations);
     run.folder.write_json(RESULT, &object)?;
     let tables = || text(&report::report(&subject), terminal::style());
     terminal::print(output, tables, &object)
@@ -42,7 +39,7 @@ pub(crate) fn show(
 /// Builds the data of a finished identifiability analysis's report.
 pub(crate) fn subject<'a>(
     run: &'a Identification,
-    found: &'a Found,
+    found: &'a IdentificationStudy,
     wall_s: f64,
 ) -> anyhow::Result<report::IdentificationInput<'a>> {
     Ok(report::IdentificationInput {

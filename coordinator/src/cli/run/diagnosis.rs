@@ -13,7 +13,7 @@ use discrepancy::{
 use protocol::{announce::EffectDescriptor, case::Case};
 use search::space::Space;
 use serde::{Deserialize, Serialize};
-use study::{self, DiagnosisResult, Evaluator, StageView, Stop, Watch};
+use study::{self, Entry, Evaluator, RecordedDiagnosis, StageView, Stop, Watch};
 
 /// Diagnosis: run of `horsehead diagnose`.
 pub(crate) type Diagnosis = Run<DiagnosisSettings>;
@@ -42,19 +42,7 @@ impl manifest::RunIdentity for DiagnosisSettings {
     }
 }
 
-/// Results of a diagnosis, with the effects that it considered and notes.
-pub(crate) struct Found {
-    /// Notes about the case and its records.
-    pub(crate) notes: Vec<String>,
-    /// Result of the diagnosis, with the number and the time of the simulations in each stage.
-    pub(crate) diagnosed: DiagnosisResult,
-    /// Candidate effects: those known to the workers but absent from the case, and unknowns of the case that
-    /// are switched off.
-    pub(crate) library: Vec<EffectDescriptor>,
-}
-
-/// Requests the library of effects from the workers and runs the diagnosis. The evaluator is either the
-/// workers or the recording of a journal, which reproduces the results.
+/// Requests the library of effects from the workers and runs the diagnosis; enters records, notes and result.
 ///
 /// # Errors
 /// If an effect to be excluded is unknown; otherwise as [`study::diagnose_on`].
@@ -64,10 +52,12 @@ pub(crate) async fn diagnose<E: Evaluator>(
     loaded: &Loaded,
     watch: &mut dyn Watch<StageView>,
     stop: &mut Stop,
-) -> anyhow::Result<Found> {
+) -> anyhow::Result<()> {
+    evaluator.enter(&Entry::Records(loaded.cycles.clone()))?;
     let library = study::library(evaluator, stop).await?;
     let notes = study::check_records(evaluator, &loaded.case, &loaded.cycles, stop).await?;
     watch.noted(&notes);
+    evaluator.enter(&Entry::Noted(notes.clone()))?;
     let notes = [&manifest.notes[..], &notes].concat();
     let off = InactiveUnknowns::of(&loaded.case.unknowns);
     for id in &manifest.settings.thresholds.without {
@@ -92,9 +82,8 @@ pub(crate) async fn diagnose<E: Evaluator>(
             (library, basin_search_preset(&loaded.case)),
         )?
     };
-    let diagnosed = study::diagnose_on(evaluator, &inputs, watch, stop).await?;
-    let off = off.into_iter().map(|off| off.candidate);
-    let mut notes = notes;
+    let mut diagnosed = study::diagnose_on(evaluator, &inputs, watch, stop).await?;
+    diagnosed.notes = notes;
     let result = &diagnosed.diagnosis;
     let check = result
         .preflight_after
@@ -104,17 +93,21 @@ pub(crate) async fn diagnose<E: Evaluator>(
         let finer = case::kind::of(&loaded.case).finer_settings(&loaded.case, &own.thresholds)?;
         if !finer.is_empty() {
             let lines: Vec<String> = finer.iter().map(|line| format!("`{line}`")).collect();
-            notes.push(format!(
+            diagnosed.notes.push(format!(
                 "what lowers the numerical error, at the cost of longer simulations: {} in case.toml",
                 lines.join(", ")
             ));
         }
     }
-    Ok(Found {
-        notes,
-        diagnosed,
-        library: inputs.library.into_iter().chain(off).collect(),
-    })
+    Ok(evaluator.enter(&Entry::Diagnosed(Box::new(diagnosed)))?)
+}
+
+/// Reads the result of a finished diagnosis from its journal.
+///
+/// # Errors
+/// If the diagnosis is not finished, or its journal is missing or of another version.
+pub(crate) fn recorded(run: &Diagnosis) -> anyhow::Result<RecordedDiagnosis> {
+    study::read_diagnosis(&run.expect_journal()?).map_err(|error| run.unreadable(error))
 }
 
 /// Returns the preset of the search that finds the basin of attraction of the fit: `quick` if the case

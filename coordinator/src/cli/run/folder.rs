@@ -6,10 +6,9 @@ use super::{
     command_line::quote_path,
     manifest::{CALIBRATE, DIAGNOSE, FORMAT, calibrate},
 };
-use crate::cli::output::{problem::Problem, terminal};
+use crate::cli::output::problem::Problem;
 use anyhow::Context as _;
 use case::{CaseEffect, write_genes};
-use journal::JournalSnapshot;
 use journal::event::Event;
 use protocol::case::Case;
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
@@ -131,15 +130,6 @@ impl RunFolder {
     /// Returns whether the folder contains a journal that is not empty.
     pub(crate) fn has_journal(&self) -> bool {
         fs::metadata(self.file(journal::FILE)).is_ok_and(|file| file.len() > 0)
-    }
-
-    /// Opens the journal of the run read-only; damage to it is reported on standard error.
-    pub(crate) fn recording(&self) -> anyhow::Result<JournalSnapshot> {
-        let recording = JournalSnapshot::read(&self.file(journal::FILE), |_, _| {})?;
-        for damage in journal::describe_damage(&recording.report().damage) {
-            terminal::tell(&format!("warning: {damage}"));
-        }
-        Ok(recording)
     }
 
     pub(crate) fn path(&self) -> &Path {

@@ -6,11 +6,9 @@ use super::{
 };
 use crate::cli::output::problem::Problem;
 use case::Loaded;
-use discrepancy::{
-    diagnose::Inputs, identify::IdentificationResult, laboratory::Stage, thresholds::Thresholds,
-};
+use discrepancy::{diagnose::Inputs, thresholds::Thresholds};
 use serde::{Deserialize, Serialize};
-use study::{self, Evaluator, StageCost, StageView, Stop, Watch};
+use study::{self, Entry, Evaluator, IdentificationStudy, StageView, Stop, Watch};
 
 /// Identifiability analysis: run of `horsehead identify`.
 pub(crate) type Identification = Run<IdentificationSettings>;
@@ -36,17 +34,8 @@ impl manifest::RunIdentity for IdentificationSettings {
     }
 }
 
-/// Results of an identifiability analysis.
-pub(crate) struct Found {
-    /// Notes about the case and its records.
-    pub(crate) notes: Vec<String>,
-    /// Result of the analysis: identifiability of the unknowns, and prediction bands.
-    pub(crate) identified: IdentificationResult,
-    /// Number and time of the simulations, for each stage that ran any.
-    pub(crate) accounts: Vec<(Stage, StageCost)>,
-}
-
-/// Requests the library of instrument effects from the workers and runs the identifiability analysis.
+/// Requests the library of instrument effects from the workers and runs the identifiability analysis; enters
+/// records, notes and result.
 ///
 /// # Errors
 /// If no fit completes near the start; otherwise as [`study::identify_on`].
@@ -56,10 +45,12 @@ pub(crate) async fn identify<E: Evaluator>(
     loaded: &Loaded,
     watch: &mut dyn Watch<StageView>,
     stop: &mut Stop,
-) -> anyhow::Result<Found> {
+) -> anyhow::Result<()> {
+    evaluator.enter(&Entry::Records(loaded.cycles.clone()))?;
     let library = study::library(evaluator, stop).await?;
     let notes = study::check_records(evaluator, &loaded.case, &loaded.cycles, stop).await?;
     watch.noted(&notes);
+    evaluator.enter(&Entry::Noted(notes.clone()))?;
     let notes = [&manifest.notes[..], &notes].concat();
     let own = &manifest.settings;
     let thresholds = Thresholds {
@@ -77,7 +68,7 @@ pub(crate) async fn identify<E: Evaluator>(
         )?
     };
     let done = study::identify_on(evaluator, case, &inputs, watch, stop).await?;
-    let Some(identified) = done.identified else {
+    let Some(done) = done else {
         return Err(Problem {
             message: "no fit of this record completes, so the identifiability of the unknowns cannot be assessed"
                 .to_owned(),
@@ -87,9 +78,14 @@ pub(crate) async fn identify<E: Evaluator>(
         }
         .into());
     };
-    Ok(Found {
-        notes,
-        identified,
-        accounts: done.accounts,
-    })
+    let done = IdentificationStudy { notes, ..done };
+    Ok(evaluator.enter(&Entry::Identified(Box::new(done)))?)
+}
+
+/// Reads the result of a finished identifiability analysis from its journal.
+///
+/// # Errors
+/// If the analysis is not finished, or its journal is missing or of another version.
+pub(crate) fn recorded(run: &Identification) -> anyhow::Result<IdentificationStudy> {
+    study::read_identification(&run.expect_journal()?).map_err(|error| run.unreadable(error))
 }

@@ -140,28 +140,6 @@ impl<S: RunIdentity> Run<S> {
         self.folder.is_begun() && computed && !self.folder.has_journal()
     }
 
-    /// Checks that the run can be replayed: it is finished and its journal is present.
-    ///
-    /// # Errors
-    /// If it cannot be replayed; the error gives the command that resumes it.
-    pub(crate) fn expect_replayable(&self) -> Result<(), Problem> {
-        let path = self.folder.path().display();
-        let (message, remedy) = if !self.folder.is_finished() {
-            (format!("{path} is not finished"), "resume the run first")
-        } else if !self.folder.has_journal() {
-            (
-                format!("the journal of {path} is missing or empty"),
-                "restore the journal, or compute the run again",
-            )
-        } else {
-            return Ok(());
-        };
-        Err(Problem {
-            message,
-            remedy: format!("{remedy}:\n  {}", self.resume_command()),
-        })
-    }
-
     /// Returns the path of the run's journal.
     ///
     /// # Errors

@@ -32,7 +32,11 @@ fn shown(rig: &Rig, run: &str) -> BTreeMap<String, Vec<u8>> {
 #[test]
 fn a_run_is_shown_without_its_case_and_without_workers() {
     let rig = Rig::new();
-    let runs: [&[&str]; 1] = [&["calibrate", "CASE", "--run", "calibrated"]];
+    let runs: [&[&str]; 3] = [
+        &["calibrate", "CASE", "--run", "calibrated"],
+        &["diagnose", "CASE", "--run", "diagnosed"],
+        &["identify", "CASE", "--run", "identified"],
+    ];
     for words in runs {
         rig.run(words);
     }

@@ -8,13 +8,14 @@
 use crate::linear::score::family_wise;
 use crate::localisation::parameter_drift::linear_record::LinearizedRecord;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+use serde::{Deserialize, Serialize};
 use statrs::distribution::{ContinuousCDF as _, StudentsT};
 
 /// Number of equal sectors of the abscissa.
 const SECTORS: usize = 4;
 
 /// Part of the data on which a parameter was refitted.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum RecordPart {
     /// Sector of the abscissa.
     Sector {
@@ -28,7 +29,7 @@ pub enum RecordPart {
 }
 
 /// Shift of a parameter that one part of the data would require.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ParameterShift {
     /// Part of the data on which the parameter was refitted.
     pub part: RecordPart,
@@ -39,7 +40,7 @@ pub struct ParameterShift {
 }
 
 /// Shifts that all parts of the data would require of one parameter.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ParameterDrift {
     /// Index of the parameter among the unknowns.
     pub unknown: usize,

@@ -11,9 +11,10 @@ use crate::localisation::window_test::null::{Null, can_flip};
 use crate::localisation::window_test::windows::{WIDTHS, Windows, windows};
 use crate::record::bins::Bins;
 use nalgebra::DVector;
+use serde::{Deserialize, Serialize};
 
 /// Window of the abscissa in which the residual is significant.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AbscissaWindow {
     /// Index of the channel in the record.
     pub channel: usize,
@@ -30,7 +31,7 @@ pub struct AbscissaWindow {
 
 /// Map of the strength by channel and bin for the narrowest windows, with the significant windows; of
 /// overlapping windows only the strongest is kept.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AlongMap {
     /// Bins into which each channel's abscissa is divided.
     pub bins: Vec<Bins>,

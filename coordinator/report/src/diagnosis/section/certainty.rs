@@ -49,21 +49,17 @@ fn facts(subject: &DiagnosisInput<'_>) -> Vec<Fact> {
     let recalibration = format!(
         "one more step promises to lower the misfit by {}; the tests look at the residual after that \
          step",
-        percent(fit.search.predicted_decrease())
+        percent(fit.predicted_decrease)
     );
     let mut facts = vec![
         Fact::new("noise", noise),
         Fact::new("recalibration", recalibration),
     ];
     let after = diagnosis.after.iter();
-    facts.extend(
-        after
-            .filter(|after| !after.model.added.is_empty())
-            .map(|after| {
-                let promised = percent(after.search.predicted_decrease());
-                Fact::new("fit with the answer", format!("the same: {promised}"))
-            }),
-    );
+    facts.extend(after.filter(|after| !after.added.is_empty()).map(|after| {
+        let promised = percent(after.predicted_decrease);
+        Fact::new("fit with the answer", format!("the same: {promised}"))
+    }));
     facts.extend(diagnosis.rounds.first().map(|round| {
         let left = format!(
             "{} by the best model, per degree of freedom; intervals are as many times as wide",

@@ -7,7 +7,7 @@ use crate::words::condition_name;
 
 pub(super) fn section(subject: &DiagnosisInput<'_>) -> Section {
     let mut facts = origin::facts(&subject.origin, subject.case);
-    facts.extend(subject.records.iter().map(|record| {
+    facts.extend(subject.diagnosed.records.iter().map(|record| {
         let name = condition_name(subject.case, record.condition);
         let (cycles, channels) = (record.cycles.len(), channels(record).join(", "));
         Fact::new(
@@ -15,9 +15,9 @@ pub(super) fn section(subject: &DiagnosisInput<'_>) -> Section {
             format!("{cycles} cycles of {channels}"),
         )
     }));
-    let library = subject.library.iter();
+    let library = subject.diagnosed.result.library.iter();
     let named = library.filter(|effect| !effect.generic).count();
-    let forces = subject.library.len() - named;
+    let forces = subject.diagnosed.result.library.len() - named;
     facts.extend([
         Fact::new(
             "library",

@@ -45,7 +45,7 @@ fn discrepancy(subject: &DiagnosisInput<'_>, shown: &[ConditionCurves<'_>]) -> V
     let added = diagnosis
         .after
         .as_ref()
-        .is_some_and(|fit| !fit.model.added.is_empty());
+        .is_some_and(|fit| !fit.added.is_empty());
     let beside = if added {
         " beside the added effects"
     } else {

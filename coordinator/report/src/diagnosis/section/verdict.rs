@@ -41,7 +41,10 @@ pub(super) fn section(subject: &DiagnosisInput<'_>) -> Section {
     if subject.origin.synthetic {
         blocks.push(Block::Text(SYNTHETIC.to_owned()));
     }
-    let notes = diagnosis.notes.iter().chain(subject.notes);
+    let notes = diagnosis
+        .notes
+        .iter()
+        .chain(&subject.diagnosed.result.notes);
     let notes: Vec<String> = notes.cloned().collect();
     if !notes.is_empty() {
         blocks.push(Block::Warning(notes));

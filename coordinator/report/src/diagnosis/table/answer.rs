@@ -80,22 +80,19 @@ fn edge(value: f64, lower: f64, upper: f64) -> Option<&'static str> {
 /// Builds the table of the case's unknowns, fitted without and with the added effects, with their bounds.
 pub(in crate::diagnosis) fn genes(subject: &DiagnosisInput<'_>) -> Option<Table> {
     let diagnosis = subject.diagnosis();
-    let before = diagnosis
-        .before
-        .as_ref()
-        .map(|fit| fit.model.genes(fit.x()))?;
-    let after = diagnosis.after.as_ref().map(|fit| fit.model.genes(fit.x()));
+    let before = diagnosis.before.as_ref().map(|fit| &fit.genes)?;
+    let after = diagnosis.after.as_ref().map(|fit| &fit.genes);
     let rows = subject.case.unknowns.iter().enumerate().map(|(k, gene)| {
         let of =
             |value: Option<&f64>| value.map_or_else(|| MISSING.to_owned(), |v| significant(*v));
-        let last = after.as_ref().unwrap_or(&before).get(k);
+        let last = after.unwrap_or(before).get(k);
         let edge = last.and_then(|v| at_bound(gene, *v));
         Row::of(
             gene,
             [
                 significant(gene.start),
                 of(before.get(k)),
-                of(after.as_ref().and_then(|after| after.get(k))),
+                of(after.and_then(|after| after.get(k))),
                 interval([gene.lower, gene.upper], &gene.unit),
                 edge.map_or_else(String::new, |edge| format!("at its {edge} bound")),
             ],

@@ -4,7 +4,8 @@ use crate::document::{Row, Table};
 use crate::number::{fixed, percent, significant};
 use crate::words::condition_name;
 use discrepancy::localisation::parameter_drift::{ParameterDrift, ParameterShift, RecordPart};
-use discrepancy::model::Fit;
+use discrepancy::model::FitSummary;
+use search::space::Space;
 
 /// Significance level: a shift of a parameter with a larger p-value is taken as noise.
 const CLEAR: f64 = 0.05;
@@ -17,7 +18,7 @@ pub(in crate::diagnosis) struct VariationUnderModel<'a> {
     /// Title of the table.
     pub title: &'static str,
     /// Fitted model whose parameters are examined.
-    pub fit: &'a Fit,
+    pub fit: &'a FitSummary,
     /// Change that each unknown would need in each sector of the record or under each condition.
     pub wander: &'a [ParameterDrift],
 }
@@ -46,10 +47,11 @@ pub(in crate::diagnosis) fn wander(
     let parts = first.shifts.iter().map(part);
     let head = [String::new(), "whole record".to_owned()].into_iter();
     let head = head.chain(parts).chain(["takes up".to_owned()]);
+    let space = Space::new(&subject.case.unknowns).ok()?;
     let rows = clear.iter().take(SHOWN).filter_map(|wander| {
         let k = wander.unknown;
-        let axis = fit.model.space.axes().get(k)?;
-        let value = |by: f64| significant(axis.value(fit.x()[k] + by));
+        let (axis, at) = space.axes().get(k).zip(fit.coordinates.get(k))?;
+        let value = |by: f64| significant(axis.value(at + by));
         let moved = |shift: &ParameterShift| {
             if shift.p_value <= CLEAR {
                 value(shift.by)
@@ -75,8 +77,11 @@ pub(in crate::diagnosis) fn wander(
 
 /// Returns the unknowns of the case whose shift is significant in at least one sector or condition of the
 /// records.
-fn clear<'a>(fit: &Fit, wander: &'a [ParameterDrift]) -> impl Iterator<Item = &'a ParameterDrift> {
-    let genes = fit.model.space.dimension();
+fn clear<'a>(
+    fit: &FitSummary,
+    wander: &'a [ParameterDrift],
+) -> impl Iterator<Item = &'a ParameterDrift> {
+    let genes = fit.coordinates.len();
     wander.iter().filter(move |wander| {
         wander.unknown < genes && wander.shifts.iter().any(|shift| shift.p_value <= CLEAR)
     })

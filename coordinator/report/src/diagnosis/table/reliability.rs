@@ -4,6 +4,7 @@ use crate::document::{Row, Table};
 use crate::number::{MISSING, count, duration, fixed, quantity};
 use discrepancy::baseline::discretisation_check::Preflight;
 use protocol::case::Channel;
+use std::time::Duration;
 
 /// Builds the table of the discretisation error of each channel, for the recalibrated model and for the model
 /// with the added effects.
@@ -74,7 +75,7 @@ fn row(check: &Preflight, c: usize, channel: &Channel) -> Row {
 
 /// Builds the table of the cost of each stage of the diagnosis; `None` if no cost was recorded.
 pub(in crate::diagnosis) fn stages(subject: &DiagnosisInput<'_>) -> Option<Table> {
-    let accounts = &subject.diagnosed.accounts;
+    let accounts = &subject.diagnosed.result.accounts;
     let mut rows: Vec<Row> = accounts
         .iter()
         .map(|(stage, account)| {
@@ -84,19 +85,20 @@ pub(in crate::diagnosis) fn stages(subject: &DiagnosisInput<'_>) -> Option<Table
                     count(account.experiments),
                     count(account.failed),
                     count(account.batches),
-                    duration(account.wall.as_secs_f64()),
+                    duration(subject.busy(*stage).as_secs_f64()),
                 ],
             )
         })
         .collect();
     let total = |of: fn(&study::StageCost) -> u64| accounts.iter().map(|(_, a)| of(a)).sum();
+    let busy: Duration = accounts.iter().map(|(stage, _)| subject.busy(*stage)).sum();
     rows.push(Row::new(
         "all",
         [
             count(total(|account| account.experiments)),
             count(total(|account| account.failed)),
             count(total(|account| account.batches)),
-            duration(subject.wall_s),
+            duration(busy.as_secs_f64()),
         ],
     ));
     if accounts.is_empty() {
@@ -104,10 +106,9 @@ pub(in crate::diagnosis) fn stages(subject: &DiagnosisInput<'_>) -> Option<Table
     }
     Some(Table::new(
             "What each stage cost",
-            ["", "simulations", "did not complete", "batches", "time in this session"],
+            ["", "simulations", "did not complete", "batches", "slot time"],
             rows,
         ).with_notes([
             "Simulations of one batch are independent of each other; a batch waits for the one before.",
-            "Results that the journal held already take no time; the last line's time is that of all \
-             sessions.",]))
+            "Slot time is the time in slots of workers, summed over all simulations of a stage.",]))
 }

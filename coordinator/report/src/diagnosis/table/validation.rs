@@ -50,7 +50,11 @@ pub(in crate::diagnosis) fn gaps(subject: &DiagnosisInput<'_>) -> Option<Table> 
 
 /// States the p-values of a whiteness test of the residual, without and with the added effects.
 fn whiteness(subject: &DiagnosisInput<'_>, [before, after]: [f64; 2]) -> String {
-    let channels = subject.records.iter().flat_map(|record| &record.channels);
+    let channels = subject
+        .diagnosed
+        .records
+        .iter()
+        .flat_map(|record| &record.channels);
     let along = channels
         .map(|own| own.channel.abscissa.name.as_str())
         .next();

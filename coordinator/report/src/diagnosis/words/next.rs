@@ -31,7 +31,7 @@ pub(in crate::diagnosis) fn next(subject: &DiagnosisInput<'_>) -> Vec<String> {
             hidden.measurement
         ));
     }
-    if subject.records.len() < 2 {
+    if subject.diagnosed.records.len() < 2 {
         steps.push(
             "Record a second speed or another load: nothing here was shown on a condition that took \
              no part."

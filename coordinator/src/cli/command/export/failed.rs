@@ -2,7 +2,6 @@
 //! into folders for inspection.
 use crate::cli::{output::problem::Problem, run::folder::RunFolder};
 use anyhow::Context as _;
-use journal::JournalSnapshot;
 use journal::event::{Event, Finished};
 use protocol::{
     file::is_below,
@@ -53,8 +52,8 @@ struct OneFailed {
 /// given-up jobs.
 pub(super) fn fetch(run: &Path, to: Option<&Path>, force: bool) -> anyhow::Result<FailedOutput> {
     let folder = RunFolder::at(run)?;
-    let journal = folder.file(journal::FILE);
-    if !journal.exists() {
+    let file = folder.file(journal::FILE);
+    if !file.exists() {
         return Err(Problem {
             message: format!("{} has no journal yet", folder.path().display()),
             remedy:
@@ -64,7 +63,7 @@ pub(super) fn fetch(run: &Path, to: Option<&Path>, force: bool) -> anyhow::Resul
         .into());
     }
     let mut failures: Vec<(u64, Failure)> = Vec::new();
-    let recording = JournalSnapshot::read(&journal, |_, event| {
+    let report = journal::fold(&file, |_, event| {
         if let Event::Finished(finished) = event
             && let Finished {
                 attempt,
@@ -107,7 +106,7 @@ pub(super) fn fetch(run: &Path, to: Option<&Path>, force: bool) -> anyhow::Resul
         run: run.display().to_string(),
         folder: any.then(|| place.display().to_string()),
         failed: failures.into_iter().map(one).collect::<Result<_, _>>()?,
-        notes: journal::describe_damage(&recording.report().damage),
+        notes: journal::describe_damage(&report.damage),
     })
 }
 

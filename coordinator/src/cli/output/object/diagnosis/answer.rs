@@ -52,7 +52,7 @@ pub(crate) struct DiagnoseOutput {
     #[serde(rename = "where")]
     whereabouts: Option<LocalisationOutput>,
     wander: VaryingUnknownsOutput,
-    detection_limits: Vec<Limit>,
+    detection_limits: Vec<LimitOutput>,
     /// Estimated instrument errors (nuisance parameters), reported separately from the effects.
     nuisances: Vec<NuisanceEstimate>,
     /// Effects that the measured record cannot reveal because a change of the unknowns imitates them, largest
@@ -131,6 +131,16 @@ struct WhitenessOutput {
     p_after: f64,
 }
 
+/// Detection limit of an effect.
+#[derive(Debug, Serialize)]
+struct LimitOutput {
+    id: String,
+    parameter: String,
+    unit: String,
+    /// Smallest size that would be detected; null if no size within the effect's bounds would be.
+    size: Option<f64>,
+}
+
 #[derive(Debug, Serialize)]
 struct RivalOutput {
     id: String,
@@ -166,16 +176,17 @@ struct StageOutput {
     simulations: u64,
     failed: u64,
     batches: u64,
-    wall_s: f64,
+    /// Slot time of the simulations, summed (s).
+    busy_s: f64,
 }
 
 /// Builds the JSON object of a diagnosis.
 pub(crate) fn object(subject: &DiagnosisInput<'_>) -> DiagnoseOutput {
-    let diagnosis = &subject.diagnosed.diagnosis;
+    let diagnosis = &subject.diagnosed.result.diagnosis;
     let genes = diagnosis
         .after
         .as_ref()
-        .map(|fit| fit.model.genes(fit.x()))
+        .map(|fit| fit.genes.clone())
         .unwrap_or_default();
     DiagnoseOutput {
         run: subject.origin.run.clone(),
@@ -235,6 +246,7 @@ pub(crate) fn object(subject: &DiagnosisInput<'_>) -> DiagnoseOutput {
         ran_out: diagnosis.ran_out.iter().map(|stage| stage.name()).collect(),
         stages: subject
             .diagnosed
+            .result
             .accounts
             .iter()
             .map(|(stage, account)| StageOutput {
@@ -242,7 +254,7 @@ pub(crate) fn object(subject: &DiagnosisInput<'_>) -> DiagnoseOutput {
                 simulations: account.experiments,
                 failed: account.failed,
                 batches: account.batches,
-                wall_s: account.wall.as_secs_f64(),
+                busy_s: subject.busy(*stage).as_secs_f64(),
             })
             .collect(),
         wall_s: subject.wall_s,
@@ -267,15 +279,12 @@ fn numerical_error(diagnosis: &Diagnosis) -> Option<NumericalOutput> {
     })
 }
 
-/// Replaces the size of an effect's detection limit by infinity (null in JSON) if no size within the effect's
-/// bounds would be detected.
-fn bounded(limit: &Limit) -> Limit {
-    Limit {
-        size: if limit.is_within_bounds() {
-            limit.size
-        } else {
-            f64::INFINITY
-        },
-        ..limit.clone()
+/// Converts a detection limit to its JSON form.
+fn bounded(limit: &Limit) -> LimitOutput {
+    LimitOutput {
+        id: limit.id.clone(),
+        parameter: limit.parameter.clone(),
+        unit: limit.unit.clone(),
+        size: limit.is_within_bounds().then_some(limit.size),
     }
 }

@@ -43,8 +43,9 @@ struct JointOutput {
 
 /// Builds the localisation of the residual; `None` if the diagnosis did not perform it.
 pub(super) fn localisation(subject: &DiagnosisInput<'_>) -> Option<LocalisationOutput> {
-    let seen = subject.diagnosed.diagnosis.localisation.as_ref()?;
+    let seen = subject.diagnosed.result.diagnosis.localisation.as_ref()?;
     let record = subject
+        .diagnosed
         .records
         .iter()
         .find(|r| r.condition == subject.case.objective.condition)?;

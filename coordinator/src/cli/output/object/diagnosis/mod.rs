@@ -7,4 +7,3 @@ mod localisation;
 mod parameter_drift;
 #[cfg(test)]
 mod tests;
-pub(in crate::cli) mod times;

@@ -2,9 +2,10 @@
 //! physics.
 use discrepancy::{
     localisation::parameter_drift::{ParameterDrift, ParameterShift, RecordPart},
-    model::Fit,
+    model::FitSummary,
 };
 use report::diagnosis::DiagnosisInput;
+use search::space::Space;
 use serde::Serialize;
 
 /// Unknowns whose values would have to vary along the turn or between conditions, under the recalibrated
@@ -39,7 +40,7 @@ struct PartOutput {
 /// Converts the unknowns whose values would have to vary to their JSON form, for the models before and after
 /// effects were added.
 pub(super) fn wandered(subject: &DiagnosisInput<'_>) -> VaryingUnknownsOutput {
-    let diagnosis = &subject.diagnosed.diagnosis;
+    let diagnosis = &subject.diagnosed.result.diagnosis;
     VaryingUnknownsOutput {
         before: wanders(subject, diagnosis.before.as_ref(), &diagnosis.drifts),
         after: wanders(subject, diagnosis.after.as_ref(), &diagnosis.drifts_after),
@@ -48,13 +49,14 @@ pub(super) fn wandered(subject: &DiagnosisInput<'_>) -> VaryingUnknownsOutput {
 
 fn wanders(
     subject: &DiagnosisInput<'_>,
-    fit: Option<&Fit>,
+    fit: Option<&FitSummary>,
     all: &[ParameterDrift],
 ) -> Vec<VaryingUnknownOutput> {
-    let Some(fit) = fit else {
+    let space = Space::new(&subject.case.unknowns).ok();
+    let Some((fit, space)) = fit.zip(space) else {
         return Vec::new();
     };
-    let axes: Vec<_> = fit.model.space.axes().iter().zip(fit.x()).collect();
+    let axes: Vec<_> = space.axes().iter().zip(&fit.coordinates).collect();
     let of_gene = |wander: &ParameterDrift| {
         let (axis, x) = axes.get(wander.unknown)?;
         let condition = |index: usize| {

@@ -1,6 +1,6 @@
 //! Tests of the JSON object printed by `horsehead diagnose CASE --output json`: field names and values for
 //! every verdict.
-use super::{answer::object, times::Times};
+use super::answer::object;
 use discrepancy::{
     diagnose::{
         Diagnosis, Estimate, ForceEstimate, IndistinguishablePair, Left, Limit, ParameterEstimate,
@@ -30,7 +30,7 @@ use search::{
 };
 use serde_json::Value;
 use std::{path::Path, time::Duration};
-use study::{DiagnosisResult, StageCost};
+use study::{DiagnosisResult, RecordedDiagnosis, StageCost};
 
 fn case() -> Case {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases/cyjs10-5-37hb");
@@ -157,7 +157,7 @@ fn full(verdict: Verdict) -> Diagnosis {
 
 fn printed(diagnosis: Diagnosis) -> Value {
     let case = case();
-    let records = [Record {
+    let records = vec![Record {
         condition: case.objective.condition,
         channels: [0, 2]
             .map(|at| Recorded::new(at, &case.channels[at]))
@@ -174,17 +174,20 @@ fn printed(diagnosis: Diagnosis) -> Value {
                 experiments: 40,
                 failed: 2,
                 batches: 3,
-                wall: Duration::from_millis(1500),
             },
         )],
+        library: Vec::new(),
+        notes: Vec::new(),
+    };
+    let diagnosed = RecordedDiagnosis {
+        result: diagnosed,
+        records,
+        slot_times: [(Stage::Test.name().to_owned(), Duration::from_millis(1500))].into(),
     };
     let subject = DiagnosisInput {
         case: &case,
-        records: &records,
-        library: &[],
         diagnosed: &diagnosed,
         origin: Origin::default(),
-        notes: &[],
         wall_s: 2.0,
     };
     let text = serde_json::to_string(&object(&subject)).unwrap();
@@ -244,7 +247,7 @@ fn a_force_without_a_cause_is_printed_with_its_size() {
         interval: [800.0, 1000.0],
         phase_deg: Some(-40.0),
         ln_evidence: 75.0,
-        fit: Fit::new(model, (search, Vec::new()), None),
+        fit: Fit::new(model, (search, Vec::new()), None).summary(),
         rows: vec![row(DataRole::Fitted, 0.9), row(DataRole::Condition, 0.7)],
     };
     let said = printed(Diagnosis {
@@ -280,7 +283,7 @@ fn wandering_genes_have_their_values() {
         p_value: 0.01,
     };
     let said = printed(Diagnosis {
-        before: Some(Fit::new(model, (search, Vec::new()), None)),
+        before: Some(Fit::new(model, (search, Vec::new()), None).summary()),
         drifts: vec![ParameterDrift {
             unknown: 1,
             shifts: vec![shift(sector, 1.0), shift(RecordPart::Condition(1), -1.0)],
@@ -421,17 +424,5 @@ fn effects_gaps_and_limits_are_as_documented() {
     assert!(said["data_worth"][0]["cycles_with_other_conditions"].is_null());
     assert_eq!(said["stages"][0]["simulations"], 40);
     assert_eq!(said["stages"][0]["batches"], 3);
-    assert_eq!(said["stages"][0]["wall_s"], 1.5);
-}
-
-#[test]
-fn times_that_were_written_are_put_back() {
-    let times: Times = serde_json::from_value(printed(full(Verdict::Named))).unwrap();
-    let mut accounts = [
-        (Stage::Test, StageCost::default()),
-        (Stage::Refit, StageCost::default()),
-    ];
-    times.restore(&mut accounts);
-    assert_eq!(accounts[0].1.wall, Duration::from_millis(1500));
-    assert_eq!(accounts[1].1.wall, Duration::ZERO);
+    assert_eq!(said["stages"][0]["busy_s"], 1.5);
 }

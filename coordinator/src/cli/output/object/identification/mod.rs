@@ -3,13 +3,11 @@ use crate::kind;
 use discrepancy::{
     diagnose::NuisanceEstimate,
     identify::{Determination, Direction, FurtherMeasurement, UnknownEstimate},
-    laboratory::Stage,
 };
 use report::identification::IdentificationInput;
 use serde::Serialize;
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
-use study::StageCost;
 
 /// JSON object printed by `horsehead identify CASE --output json`: what the measured records determine.
 #[derive(Debug, Serialize)]
@@ -81,10 +79,7 @@ fn unknown(own: &UnknownEstimate, has_intervals: bool) -> UnknownOutput {
 }
 
 /// Builds the JSON object of an identifiability analysis.
-pub(crate) fn object(
-    subject: &IdentificationInput<'_>,
-    accounts: &[(Stage, StageCost)],
-) -> IdentifyOutput {
+pub(crate) fn object(subject: &IdentificationInput<'_>, simulations: u64) -> IdentifyOutput {
     let (case, identified) = (subject.case, subject.identified);
     let unknowns = identified.unknowns.iter();
     let bands = identified.bands.iter();
@@ -108,7 +103,7 @@ pub(crate) fn object(
         diagnose_first: !identified.is_noise,
         assumed_noise: !identified.noise.is_seen(),
         notes: notes.cloned().collect(),
-        simulations: accounts.iter().map(|(_, cost)| cost.experiments).sum(),
+        simulations,
         wall_s: subject.wall_s,
     }
 }

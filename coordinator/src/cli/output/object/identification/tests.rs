@@ -99,7 +99,7 @@ fn fields_are_a_contract() {
         notes: &[],
         wall_s: 1.0,
     };
-    let said = serde_json::to_value(object(&subject, &[])).unwrap();
+    let said = serde_json::to_value(object(&subject, 0)).unwrap();
     let unknowns = &said["unknowns"];
     assert_eq!(unknowns["kb1"]["ci95"], serde_json::json!([1e8, 3e8]));
     assert_eq!(unknowns["kb23"]["ci95"], serde_json::json!([1e8, null]));
