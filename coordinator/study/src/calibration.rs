@@ -195,7 +195,12 @@ impl CalibrationReader {
                     descent_ends,
                     digest,
                 } => concluded = Some((best, finish, descent_ends, digest)),
-                Entry::Records(_) | Entry::Diagnosed(_) | Entry::Identified(_) => {}
+                Entry::Records(_)
+                | Entry::Diagnosed(_)
+                | Entry::Identified(_)
+                | Entry::Swept(_)
+                | Entry::Tested(_)
+                | Entry::Table { .. } => {}
             }
         }
         let (best, finish, descent_ends, digest) = concluded.ok_or(RecordError::Unfinished)?;

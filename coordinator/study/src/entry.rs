@@ -1,4 +1,5 @@
 //! Entries of a study in its journal: what it found and concluded, as plain data.
+use super::orthogonal::{TestResult, TrialRun};
 use discrepancy::{
     diagnose::Diagnosis, identify::IdentificationResult, laboratory::Stage, record::Record,
 };
@@ -29,6 +30,17 @@ pub enum Entry {
     Diagnosed(Box<DiagnosisResult>),
     /// Result of an identification.
     Identified(Box<IdentificationStudy>),
+    /// Results of the searches of a grid.
+    Swept(Vec<TrialRun>),
+    /// Result of an orthogonal test.
+    Tested(Box<TestResult>),
+    /// Individuals of a table, of which each has been evaluated; their results are the recorded jobs.
+    Table {
+        /// Names of the columns.
+        names: Vec<String>,
+        /// Values of the searched unknowns of each individual, in declared units.
+        rows: Vec<Vec<f64>>,
+    },
 }
 
 /// Result of a diagnosis of model deficiencies, with what it considered and the cost of its experiments.

@@ -48,7 +48,10 @@ pub use job_number::JobNumbers;
 pub use log::{EvaluationLog, EvaluationOutcome, LogEntry};
 pub use mismatch::{check_records, mismatches, recommended};
 pub use progress::ProgressView;
-pub use recorded::{RecordError, RecordedDiagnosis, read_diagnosis, read_identification};
+pub use recorded::{
+    RecordError, RecordedDiagnosis, RecordedTable, read_diagnosis, read_grid, read_identification,
+    read_table, read_test,
+};
 pub use stop::Stop;
 pub use stop::or_stop;
 pub use sweep::{Search, SearchResult, Sweep};

@@ -1,5 +1,7 @@
 //! Results of finished studies, read from their journals: nothing is simulated, and no step of a study is repeated.
 use super::entry::{DiagnosisResult, Entry, IdentificationStudy};
+use super::evaluate::{Scored, scored};
+use super::orthogonal::{TestResult, TrialRun};
 use discrepancy::record::Record;
 use journal::{JournalError, event::Event};
 use protocol::{id::JobId, wire};
@@ -59,7 +61,12 @@ pub fn read_diagnosis(path: &Path) -> Result<RecordedDiagnosis, RecordError> {
         match entry {
             Entry::Records(own) => records = own,
             Entry::Diagnosed(own) => result = Some(*own),
-            Entry::Noted(_) | Entry::Calibrated { .. } | Entry::Identified(_) => {}
+            Entry::Noted(_)
+            | Entry::Calibrated { .. }
+            | Entry::Identified(_)
+            | Entry::Swept(_)
+            | Entry::Tested(_)
+            | Entry::Table { .. } => {}
         }
     }
     Ok(RecordedDiagnosis {
@@ -74,16 +81,109 @@ pub fn read_diagnosis(path: &Path) -> Result<RecordedDiagnosis, RecordError> {
 /// # Errors
 /// [`RecordError`] if the journal cannot be read, or the identification has not been finished.
 pub fn read_identification(path: &Path) -> Result<IdentificationStudy, RecordError> {
-    let found = read_entries(path, |_| ())?
+    read_entry(path, |entry| {
+        let Entry::Identified(own) = entry else {
+            return None;
+        };
+        Some(*own)
+    })
+}
+
+/// Reads the results of the searches of a finished grid from its journal.
+///
+/// # Errors
+/// [`RecordError`] if the journal cannot be read, or the sweep has not been finished.
+pub fn read_grid(path: &Path) -> Result<Vec<TrialRun>, RecordError> {
+    read_entry(path, |entry| {
+        let Entry::Swept(own) = entry else {
+            return None;
+        };
+        Some(own)
+    })
+}
+
+/// Reads the result of a finished orthogonal test from its journal.
+///
+/// # Errors
+/// [`RecordError`] if the journal cannot be read, or the test has not been finished.
+pub fn read_test(path: &Path) -> Result<TestResult, RecordError> {
+    read_entry(path, |entry| {
+        let Entry::Tested(own) = entry else {
+            return None;
+        };
+        Some(*own)
+    })
+}
+
+/// Table of individuals with the result of each.
+#[derive(Clone, Debug)]
+pub struct RecordedTable {
+    /// Names of the columns.
+    pub names: Vec<String>,
+    /// Values of the searched unknowns of each individual, in declared units.
+    pub rows: Vec<Vec<f64>>,
+    /// Result of each individual.
+    pub scores: Vec<Scored>,
+}
+
+/// Reads a finished table of individuals from its journal; `expand` returns the values of all unknowns of the case
+/// for those of a row.
+///
+/// # Errors
+/// [`RecordError`] if the journal cannot be read, the table has not been finished, or results are missing.
+pub fn read_table(
+    path: &Path,
+    expand: impl Fn(&[f64]) -> Vec<f64>,
+) -> Result<RecordedTable, RecordError> {
+    let bits = |genes: &[f64]| -> Vec<u64> { genes.iter().map(|gene| gene.to_bits()).collect() };
+    let (mut asked, mut found) = (BTreeMap::new(), BTreeMap::new());
+    let entries = read_entries(path, |event| match event {
+        Event::Asked(own) => {
+            let individual = own.individual.map(|individual| bits(&individual.genes));
+            asked.insert(own.job, individual.unwrap_or_default());
+        }
+        Event::Finished(finished) => {
+            let id = finished.job();
+            if let Some(genes) = asked.remove(&id)
+                && let Ok(scored) = scored(id, finished.outcome)
+            {
+                found.entry(genes).or_insert(scored);
+            }
+        }
+        Event::Begun { .. }
+        | Event::Opened { .. }
+        | Event::Joined { .. }
+        | Event::Left { .. }
+        | Event::Closed
+        | Event::Proved { .. }
+        | Event::Accounted(_)
+        | Event::Found { .. } => {}
+    })?;
+    let table = entries.into_iter().find_map(|entry| {
+        let Entry::Table { names, rows } = entry else {
+            return None;
+        };
+        Some((names, rows))
+    });
+    let (names, rows) = table.ok_or(RecordError::Unfinished)?;
+    let scores = rows
+        .iter()
+        .map(|row| found.get(&bits(&expand(row))).cloned());
+    let scores: Option<Vec<Scored>> = scores.collect();
+    Ok(RecordedTable {
+        names,
+        scores: scores.ok_or(RecordError::Incomplete)?,
+        rows,
+    })
+}
+
+/// Reads the first entry that `take` accepts.
+fn read_entry<T>(path: &Path, take: impl FnMut(Entry) -> Option<T>) -> Result<T, RecordError> {
+    let entries = read_entries(path, |_| ())?;
+    entries
         .into_iter()
-        .find_map(|entry| match entry {
-            Entry::Identified(own) => Some(*own),
-            Entry::Records(_)
-            | Entry::Noted(_)
-            | Entry::Calibrated { .. }
-            | Entry::Diagnosed(_) => None,
-        });
-    found.ok_or(RecordError::Unfinished)
+        .find_map(take)
+        .ok_or(RecordError::Unfinished)
 }
 
 /// Reads the entries of a study in their order, and calls `apply` with every event of the journal.

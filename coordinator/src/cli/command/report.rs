@@ -1,5 +1,13 @@
 //! `horsehead report`: writes the files of a finished run again, from its journal.
-use crate::cli::{argument::output::OutputChoice, output::problem::EXIT_CODES, run::kind::AnyRun};
+use super::sweep;
+use crate::cli::{
+    argument::output::OutputChoice,
+    output::problem::EXIT_CODES,
+    run::{
+        folder::RunFolder, kind::AnyRun, manifest::RunIdentity as _, opened::Run,
+        orthogonal::Orthogonal, sweep_file::SweptFile,
+    },
+};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -14,7 +22,7 @@ Nothing is simulated, and neither the case folder nor a worker is needed; an unf
 refused.
 {EXIT_CODES}"))]
 pub(super) struct Arguments {
-    /// Run folder of a calibration or a diagnosis.
+    /// Run folder.
     #[arg(value_name = "RUN", env = "HORSEHEAD_RUN")]
     run: PathBuf,
     #[command(flatten)]
@@ -23,5 +31,10 @@ pub(super) struct Arguments {
 
 /// Reads the result of the run from its journal and writes its report files.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    AnyRun::open(&arguments.run)?.show(arguments.output.output)
+    let (path, output) = (&arguments.run, arguments.output.output);
+    match RunFolder::at(path)?.head()?.kind.as_str() {
+        Orthogonal::KIND => sweep::orthogonal::show(&Run::open(path)?, output),
+        SweptFile::KIND => sweep::file::show(&Run::open(path)?, output),
+        _ => AnyRun::open(path)?.show(output),
+    }
 }

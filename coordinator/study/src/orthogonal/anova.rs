@@ -1,6 +1,7 @@
 //! Analysis of variance of a balanced design in blocks: sum of squares of each factor, and the probability
 //! that chance alone causes a sum as large.
 use super::range::{Response, mean, means};
+use serde::{Deserialize, Serialize};
 use statrs::distribution::{ContinuousCDF as _, FisherSnedecor};
 
 /// Share of the total sum of squares below which the error's sum of squares is taken for rounding, so that no
@@ -8,7 +9,7 @@ use statrs::distribution::{ContinuousCDF as _, FisherSnedecor};
 const ROUNDING: f64 = 1e-12;
 
 /// Source of variation in an analysis of variance.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum VarianceSource {
     /// Factor of the design with this index, from 0.
     Factor(usize),
@@ -19,7 +20,7 @@ pub enum VarianceSource {
 }
 
 /// Row of an analysis of variance table: one source of variation.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AnovaTerm {
     /// Source of the variation that the row describes: a factor, the blocks or the error.
     pub source: VarianceSource,
@@ -42,7 +43,7 @@ impl AnovaTerm {
 }
 
 /// Analysis of variance table: factors in their order, blocks if there are several, the error last.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Anova {
     /// Rows of the table: factors in their order, blocks if there are several, the error last.
     pub terms: Vec<AnovaTerm>,

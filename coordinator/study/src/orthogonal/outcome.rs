@@ -27,7 +27,7 @@ impl Factor {
 }
 
 /// Run of a design: the result of one search with given factor levels.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TrialRun {
     /// Index of each factor's level in the run, from 0.
     pub levels: Vec<usize>,
@@ -50,7 +50,7 @@ impl TrialRun {
 }
 
 /// Statistical analysis of the runs of an orthogonal test.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Analysis {
     /// Range analysis of every factor: mean response per level and their spread.
     pub ranges: Vec<Range>,
@@ -86,7 +86,7 @@ impl Analysis {
 }
 
 /// Confirmation of an orthogonal test: runs at the best levels with new seeds.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Confirmation {
     /// Index of the best level of every factor.
     pub levels: Vec<usize>,
@@ -107,7 +107,7 @@ impl Confirmation {
 }
 
 /// Orthogonal test with its design, runs, analysis and confirmation.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TestResult {
     /// Orthogonal array that defines the runs of the test.
     pub array: Array,

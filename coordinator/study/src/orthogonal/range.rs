@@ -1,7 +1,8 @@
 //! Range analysis: mean response at every level of a factor, and the range of these means.
+use serde::{Deserialize, Serialize};
 
 /// Observation of a designed experiment: factor levels and response of one run.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Response {
     /// Index of each factor's level in the observation, from 0.
     pub levels: Vec<usize>,
@@ -12,7 +13,7 @@ pub struct Response {
 }
 
 /// Range analysis of one factor: mean response at each of its levels.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Range {
     /// Mean response at each level of the factor \[unit of the response\].
     pub means: Vec<f64>,

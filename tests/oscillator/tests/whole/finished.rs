@@ -1,57 +1,121 @@
-//! A finished run is shown by its folder alone: without its case, and without a worker.
-use crate::rig::Rig;
-use std::{collections::BTreeMap, fs};
-
-/// Names of the files of a finished run that `report` writes.
-const FILES: [&str; 3] = ["report.html", "tables.txt", "result.json"];
+//! A finished run is shown by its folder alone: without its case, and without a worker. A run whose journal ends after
+//! any record comes to the same entries of its study.
+use crate::{rig::Rig, swept::ROWS};
+use journal::{event::Event, fold};
+use std::{collections::BTreeMap, fs, path::Path};
 
 /// Writes the files of a run again, and returns these, what is printed, and its tables.
 fn shown(rig: &Rig, run: &str) -> BTreeMap<String, Vec<u8>> {
     let path = rig.path(run);
     let printed = rig.run(&["report", &path, "--output", "json"]);
-    rig.run(&[
-        "export",
-        &path,
-        "--format",
-        "csv",
-        "--to",
-        &rig.path("tables"),
-        "--force",
-    ]);
-    let folder = fs::read_dir(rig.file("tables")).unwrap();
-    let tables = folder.map(|entry| entry.unwrap().path());
-    let files = FILES.map(|name| rig.file(run).join(name)).into_iter();
-    let read = files.chain(tables).map(|file| {
+    let (tables, format) = (rig.path("tables"), "csv");
+    let to = ["--format", format, "--to", &tables, "--force"];
+    rig.run(&[&["export", &path], &to[..]].concat());
+    let names = ["report.html", "tables.txt", "sweep.csv", "result.json"];
+    let files = names.map(|name| rig.file(run).join(name)).into_iter();
+    let exported = fs::read_dir(&tables).unwrap();
+    let exported = exported.map(|entry| entry.unwrap().path());
+    let there = files.filter(|file| file.exists()).chain(exported);
+    let read = there.map(|file| {
         let name = file.file_name().unwrap().to_string_lossy().into_owned();
         (name, fs::read(&file).unwrap())
     });
     let printed = ("printed".to_owned(), printed.into_bytes());
-    read.chain([printed]).collect()
+    let all: BTreeMap<String, Vec<u8>> = read.chain([printed]).collect();
+    assert!(
+        all.contains_key("result.json") && all.len() >= 11,
+        "{:?}",
+        all.keys()
+    );
+    all
 }
 
 #[test]
 fn a_run_is_shown_without_its_case_and_without_workers() {
     let rig = Rig::new();
-    let runs: [&[&str]; 3] = [
-        &["calibrate", "CASE", "--run", "calibrated"],
-        &["diagnose", "CASE", "--run", "diagnosed"],
-        &["identify", "CASE", "--run", "identified"],
+    let grid = "preset = \"random\"\nevaluations = 20\nseeds = [1, 2]\n[grid]\npoints = [20, 30]\n";
+    fs::write(rig.file("grid.toml"), grid).unwrap();
+    fs::write(rig.file("table.csv"), ROWS).unwrap();
+    let (grid, table, case) = (
+        rig.path("grid.toml"),
+        rig.path("table.csv"),
+        rig.path("case"),
+    );
+    let factors = "population=8,12,16;mutation_probability=0.02,0.05,0.1";
+    let runs: [(&str, &[&str]); 6] = [
+        ("calibrated", &["calibrate", "CASE"]),
+        ("diagnosed", &["diagnose", "CASE"]),
+        ("identified", &["identify", "CASE"]),
+        ("grid", &["sweep", &grid, "--case", &case]),
+        ("table", &["sweep", &table, "--case", &case]),
+        (
+            "tested",
+            &[
+                "sweep",
+                "orthogonal",
+                "CASE",
+                "--evaluations=30",
+                "--seeds=2",
+                "--factor",
+                factors,
+            ],
+        ),
     ];
-    for words in runs {
-        rig.run(words);
+    let before = runs.map(|(run, words)| {
+        let path = rig.path(run);
+        rig.run(&[words, &["--run", &path]].concat());
+        shown(&rig, run)
+    });
+    fs::remove_dir_all(&case).unwrap();
+    for file in [&grid, &table] {
+        fs::remove_file(file).unwrap();
     }
-    let names = runs.map(|words| words.last().unwrap());
-    let before = names.map(|run| shown(&rig, run));
-    fs::remove_dir_all(rig.file("case")).unwrap();
     rig.without_worker();
-    for (run, before) in names.into_iter().zip(before) {
+    for ((run, _), before) in runs.into_iter().zip(before) {
         let after = shown(&rig, run);
-        assert_eq!(
-            before.keys().collect::<Vec<_>>(),
-            after.keys().collect::<Vec<_>>()
-        );
+        let names = |all: &BTreeMap<String, Vec<u8>>| all.keys().cloned().collect::<Vec<_>>();
+        assert_eq!(names(&before), names(&after));
         for (name, content) in before {
             assert!(after[&name] == content, "{run}: {name} differs");
+        }
+    }
+}
+
+/// Returns the entries of the study in a journal by number, and the offset of the end of each record.
+fn recorded(journal: &Path) -> (BTreeMap<u64, Vec<u8>>, Vec<u64>) {
+    let (mut entries, mut ends) = (BTreeMap::new(), Vec::new());
+    fold(journal, |at, event| {
+        ends.push(at.at + u64::from(at.length));
+        if let Event::Found { number, entry } = event {
+            let earlier = entries.insert(number, entry.into_vec());
+            assert!(earlier.is_none(), "entry {number} is written twice");
+        }
+    })
+    .unwrap();
+    (entries, ends)
+}
+
+#[test]
+fn a_run_cut_after_any_record_comes_to_the_same_entries() {
+    /// Number of records after which each journal is cut.
+    const CUTS: usize = 5;
+    let rig = Rig::new();
+    for command in ["calibrate", "diagnose"] {
+        let (run, path) = (rig.file(command), rig.path(command));
+        let words = [command, "CASE", "--run", &path];
+        rig.run(&words);
+        let journal = run.join(journal::FILE);
+        let (entries, ends) = recorded(&journal);
+        let whole = fs::read(&journal).unwrap();
+        let cut_at = |cut: usize| ends[(cut + 1) * ends.len() / (CUTS + 1)];
+        // within the search, and right before and after the conclusion
+        let last = [ends.len() - 4, ends.len() - 3, ends.len() - 2].map(|at| ends[at]);
+        for end in (0..CUTS).map(cut_at).chain(last) {
+            let kept = usize::try_from(end).unwrap();
+            fs::write(&journal, &whole[..kept]).unwrap();
+            rig.run(&words);
+            let (again, _) = recorded(&journal);
+            assert!(again == entries, "{command}, cut at {end}");
         }
     }
 }

@@ -7,7 +7,8 @@ use crate::{
 use serde_json::json;
 use std::fs;
 
-const ROWS: &str = "mass,left,damping,lead\n2.1,5.6,26.0,1.7\n2.2,5.6,26.0,1.7\n2.1,5.6,26.0,1.7\n";
+pub(crate) const ROWS: &str =
+    "mass,left,damping,lead\n2.1,5.6,26.0,1.7\n2.2,5.6,26.0,1.7\n2.1,5.6,26.0,1.7\n";
 
 #[test]
 fn a_table_of_individuals_comes_back_with_scores() {

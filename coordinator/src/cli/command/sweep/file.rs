@@ -4,7 +4,7 @@ use crate::cli::{
     argument::{
         case::{LoadedCase, case_folder, load_case},
         individuals::Individuals,
-        output::OutputChoice,
+        output::{Output, OutputChoice},
         workers::WorkersChoice,
     },
     output::{
@@ -32,7 +32,7 @@ use clap::Args;
 use report::{orthogonal::runs, table};
 use search::space::Space;
 use std::path::{Path, PathBuf};
-use study::{Sweep, Watch as _, score_all};
+use study::{Entry, Evaluator as _, Sweep, Watch as _, score_all};
 
 /// Name of the result table that a sweep writes into its run folder.
 const TABLE: &str = "sweep.csv";
@@ -62,9 +62,10 @@ pub(super) fn run(arguments: &FileArguments) -> anyhow::Result<()> {
     let session = Session::begin(&arguments.workers);
     let (run, all) = begin(arguments)?;
     match (&run.manifest.settings.holds, all) {
-        (FileContent::Grid(searches), _) => search(&session, &run, searches, arguments.output),
-        (FileContent::Individuals(_), all) => score(&session, &run, &all, arguments.output),
+        (FileContent::Grid(searches), _) => search(&session, &run, searches)?,
+        (FileContent::Individuals(_), all) => score(&session, &run, all)?,
     }
+    show(&run, arguments.output.output)
 }
 
 /// Creates or opens the run of a sweep, and reads the individuals if the file is a table; for a grid the list
@@ -144,55 +145,60 @@ fn begin(arguments: &FileArguments) -> anyhow::Result<(Run<SweptFile>, Individua
 }
 
 /// Runs every search of a grid of settings.
-fn search(
-    session: &Session,
-    run: &Run<SweptFile>,
-    searches: &Searches,
-    output: OutputChoice,
-) -> anyhow::Result<()> {
+fn search(session: &Session, run: &Run<SweptFile>, searches: &Searches) -> anyhow::Result<()> {
     let space = Space::new(&run.case.unknowns)?;
     let rows = rows(searches);
     let list = searches.list(&space, &rows)?;
-    let found = session.work(run, async |bus, stop| {
+    session.work(run, async |bus, stop| {
         let mut display = Display::counting("searches done", run.case.objective_unit());
         display.resumed(bus.recorded());
         let mut sweep = Sweep::new(&run.case, &space);
         let found = sweep.run(bus, &list, &mut display, stop).await;
         display.clear();
-        found
-    })?;
-    let tried = searches.tried(&rows, &found);
-    let object = GridOutput::new(&searches.factors, &tried);
-    run.folder
-        .write(TABLE, &runs_table(&searches.factors, &tried)?)?;
-    run.folder.write_json(RESULT, &object)?;
-    let shown = runs(&run.case, &searches.factors, &tried);
-    terminal::print(
-        output.output,
-        || table::text(&shown, terminal::style()),
-        &object,
-    )
+        Ok(bus.enter(&Entry::Swept(searches.tried(&rows, &found?)))?)
+    })
 }
 
-/// Scores every individual of a table and writes the result table.
-fn score(
-    session: &Session,
-    run: &Run<SweptFile>,
-    all: &Individuals,
-    output: OutputChoice,
-) -> anyhow::Result<()> {
+/// Scores every individual of a table.
+fn score(session: &Session, run: &Run<SweptFile>, all: Individuals) -> anyhow::Result<()> {
     let space = Space::new(&run.case.unknowns)?;
     let individuals: Vec<Vec<f64>> = all.rows.iter().map(|row| space.expand(row)).collect();
-    let found = session.work(run, async |bus, stop| {
+    session.work(run, async |bus, stop| {
         let mut display = Display::counting("tables done", run.case.objective_unit());
         display.resumed(bus.recorded());
         let found = score_all(bus, &run.case, &individuals, &mut display, stop).await;
         display.clear();
-        found
-    })?;
-    let object = IndividualsOutput::new(&run.case, &all.names, &all.rows, &found);
-    let text = scored::table(&run.case, &all.names, &all.rows, &found)?;
-    run.folder.write(TABLE, &text)?;
-    run.folder.write_json(RESULT, &object)?;
-    terminal::print(output.output, || text, &object)
+        found?;
+        let Individuals { names, rows } = all;
+        Ok(bus.enter(&Entry::Table { names, rows })?)
+    })
+}
+
+/// Reads the result of a finished sweep from its run folder, writes its table and prints it.
+///
+/// # Errors
+/// If the sweep is not finished, its journal cannot be read, or a file cannot be written.
+pub(in crate::cli::command) fn show(run: &Run<SweptFile>, output: Output) -> anyhow::Result<()> {
+    let (path, case) = (run.expect_journal()?, &run.case);
+    let unreadable = |error| run.unreadable(error);
+    match &run.manifest.settings.holds {
+        FileContent::Grid(searches) => {
+            let tried = study::read_grid(&path).map_err(unreadable)?;
+            let object = GridOutput::new(&searches.factors, &tried);
+            run.folder
+                .write(TABLE, &runs_table(&searches.factors, &tried)?)?;
+            run.folder.write_json(RESULT, &object)?;
+            let shown = runs(case, &searches.factors, &tried);
+            terminal::print(output, || table::text(&shown, terminal::style()), &object)
+        }
+        FileContent::Individuals(_) => {
+            let space = Space::new(&case.unknowns)?;
+            let read = study::read_table(&path, |row| space.expand(row)).map_err(unreadable)?;
+            let object = IndividualsOutput::new(case, &read.names, &read.rows, &read.scores);
+            let text = scored::table(case, &read.names, &read.rows, &read.scores)?;
+            run.folder.write(TABLE, &text)?;
+            run.folder.write_json(RESULT, &object)?;
+            terminal::print(output, || text, &object)
+        }
+    }
 }

@@ -1,7 +1,7 @@
 //! `horsehead sweep`: runs many searches, or scores many individuals, in one resumable run.
-mod file;
+pub(super) mod file;
 mod grid;
-mod orthogonal;
+pub(super) mod orthogonal;
 mod scaling;
 
 use crate::cli::output::problem::EXIT_CODES;

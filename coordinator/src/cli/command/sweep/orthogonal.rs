@@ -4,7 +4,7 @@ use crate::cli::{
     argument::{
         case::{CaseChoice, LoadedCase},
         factor,
-        output::OutputChoice,
+        output::{Output, OutputChoice},
         settings::SettingsChoice,
         workers::WorkersChoice,
     },
@@ -36,8 +36,8 @@ use search::{
     strategy::{CATALOGUE, preset},
 };
 use std::path::PathBuf;
-use study::Watch as _;
-use study::orthogonal::{Array, Factor, TestResult};
+use study::orthogonal::{Array, Factor};
+use study::{Entry, Evaluator as _, Watch as _};
 
 /// Test settings of a search by an orthogonal array; the same command resumes.
 #[derive(Debug, Args)]
@@ -211,18 +211,20 @@ fn begin(arguments: &Arguments) -> anyhow::Result<Run<Orthogonal>> {
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let session = Session::begin(&arguments.workers);
     let run = begin(arguments)?;
-    let tested = session.work(&run, async |bus, stop| {
+    session.work(&run, async |bus, stop| {
         let mut display = Display::counting("searches done", run.case.objective_unit());
         display.resumed(bus.recorded());
         let tested = test(bus, &run, &mut display, stop).await;
         display.clear();
-        tested
+        Ok(bus.enter(&Entry::Tested(Box::new(tested?)))?)
     })?;
-    show(&run, &tested, arguments.output)
+    show(&run, arguments.output.output)
 }
 
-/// Writes the result files of a finished orthogonal test and prints its result.
-fn show(run: &Run<Orthogonal>, tested: &TestResult, output: OutputChoice) -> anyhow::Result<()> {
+/// Reads the result of a finished orthogonal test from its run folder, writes its files and prints it.
+pub(in crate::cli::command) fn show(run: &Run<Orthogonal>, output: Output) -> anyhow::Result<()> {
+    let tested =
+        &study::read_test(&run.expect_journal()?).map_err(|error| run.unreadable(error))?;
     let object = OrthogonalOutput::from(tested);
     let subject = report::SweepInput {
         case: &run.case,
@@ -234,5 +236,5 @@ fn show(run: &Run<Orthogonal>, tested: &TestResult, output: OutputChoice) -> any
     let page = files.first().map(|page| page.display().to_string());
     terminal::tell(&format!("open {}", page.unwrap_or_default()));
     let tables = || text(&report::report(&subject), terminal::style());
-    terminal::print(output.output, tables, &object)
+    terminal::print(output, tables, &object)
 }
