@@ -1,7 +1,8 @@
 //! Paths of the files in a run folder, and the remedy if one of them is damaged.
 //!
-//! `run.json` and `case.json` make the folder independent of the case folder: `verify` and `report` need
-//! nothing else. The journal, which the dispatcher keeps in the same folder, holds every result.
+//! `run.json`, `case.json` and the journal make the folder of a finished run independent of the case folder: `report`
+//! and `export` read nothing else. The journal, which the dispatcher keeps in the same folder, holds the measured records
+//! and every result.
 use super::{
     command_line::quote_path,
     manifest::{CALIBRATE, DIAGNOSE, FORMAT, calibrate},
