@@ -15,7 +15,9 @@ const READERS: [&str; 6] = [
 ];
 
 /// Words of the code that executes a study.
-const EXECUTES: [&str; 12] = [
+const EXECUTES: [&str; 14] = [
+    "replay(",
+    "Evaluator::new(",
     ": Evaluator",
     "calibrate_case(",
     "calibrate(",

@@ -1,6 +1,7 @@
 //! Entries of a study: what it finds and concludes, numbered in the order in which it finds them.
 use super::error::JournalError;
 use crate::event::Event;
+use protocol::wire;
 use std::{
     collections::BTreeMap,
     path::{Path, PathBuf},
@@ -27,8 +28,15 @@ impl StudyEntries {
     /// Returns the event to write for the study's next entry; `None` if an earlier process recorded the same.
     ///
     /// # Errors
-    /// [`JournalError::EntryDiffers`] if an earlier process recorded another entry under the same number.
+    /// [`JournalError::EntryDiffers`] if an earlier process recorded another entry under the same number,
+    /// [`JournalError::Wire`] if the entry is too long for a record.
     pub fn enter(&mut self, entry: Vec<u8>) -> Result<Option<Event>, JournalError> {
+        // with its number and length, which are encoded, too
+        let bytes = entry.len() + 64;
+        if bytes > wire::BODY_LIMIT {
+            let limit = wire::BODY_LIMIT;
+            return Err(wire::WireError::TooLong { bytes, limit }.into());
+        }
         let number = self.next;
         self.next += 1;
         match self.recorded.get(&number) {

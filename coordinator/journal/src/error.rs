@@ -85,7 +85,8 @@ pub enum JournalError {
     },
     /// The study found something else than an earlier process of the run.
     #[error(
-        "entry {number} of the study differs from the one that the journal {} holds: the run was continued with          another build or on other data; continue with the build that began it, or choose another run folder",
+        "entry {number} of the study differs from that in the journal {}: the run was begun with another build or on other \
+         data; continue with the build that began it, or choose another run folder",
         path.display()
     )]
     EntryDiffers {

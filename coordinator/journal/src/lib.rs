@@ -13,6 +13,7 @@
 //! holds a lock on the file, so that one run has one writer; on a full disk it waits. This crate does not interpret
 //! what a study found.
 pub mod account;
+mod answers;
 mod differences;
 mod entries;
 mod error;
@@ -31,6 +32,7 @@ mod sample;
 mod tests;
 mod write;
 
+pub use answers::Answers;
 pub use entries::StudyEntries;
 pub use error::JournalError;
 pub use follow::{Growth, JournalFollower};

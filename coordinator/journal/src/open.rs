@@ -58,6 +58,8 @@ pub struct OpenedRun {
 pub struct Journal {
     path: PathBuf,
     results: Results,
+    /// Jobs whose requests the journal held when it was opened.
+    asked: BTreeSet<JobId>,
     to_writer: Option<mpsc::Sender<Event>>,
     writer: Option<thread::JoinHandle<()>>,
     closing: Arc<AtomicBool>,
@@ -136,6 +138,7 @@ impl Journal {
         };
         let journal = Self {
             results: Results::new(&path, past.results)?,
+            asked: past.asked,
             path,
             to_writer: Some(to_writer),
             writer: Some(writer),
@@ -156,6 +159,11 @@ impl Journal {
     /// [`JournalError::Io`] or [`JournalError::Wire`] if the record cannot be read.
     pub fn recall(&self, job: JobId) -> Result<Option<Finished>, JournalError> {
         self.results.recall(job)
+    }
+
+    /// Returns whether the journal held the request of a job when it was opened.
+    pub fn holds_request(&self, job: JobId) -> bool {
+        self.asked.contains(&job)
     }
 
     /// Queues an event for the writing thread.

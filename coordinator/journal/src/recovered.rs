@@ -5,7 +5,7 @@ use protocol::{
     id::{JobId, RunId, WorkerId},
     proof::ReferenceResult,
 };
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Minimum length of the record that a coordinator process writes when it opens the journal (bytes); bounds
 /// how many such records a damaged stretch may have held.
@@ -31,6 +31,8 @@ pub struct RecoveredRun {
     pub present: BTreeMap<WorkerId, u32>,
     /// Jobs with the offsets of their results in the journal (bytes), in its order.
     pub results: Vec<(JobId, u64)>,
+    /// Jobs whose requests the journal holds.
+    pub asked: BTreeSet<JobId>,
     /// Encoded entries of the study by number; of several with the same number the first counts.
     pub found: BTreeMap<u64, Vec<u8>>,
 }
@@ -60,7 +62,8 @@ impl RecoveredRun {
                 self.proof.get_or_insert(proof);
             }
             Event::Finished(finished) => self.results.push((finished.job(), entry.at)),
-            Event::Asked(_) | Event::Accounted(_) => {}
+            Event::Asked(asked) => drop(self.asked.insert(asked.job)),
+            Event::Accounted(_) => {}
             Event::Found { number, entry } => {
                 self.found.entry(number).or_insert_with(|| entry.into_vec());
             }

@@ -1,7 +1,7 @@
 //! Command line: arguments, runs and output.
 //!
 //! `command` has one command per file and uses the `argument`s that several commands share; `run` begins,
-//! resumes and replays runs of every kind and manages their folders; `dashboard` follows runs and shows them in a
+//! resumes and reads runs of every kind and manages their folders; `dashboard` follows runs and shows them in a
 //! browser; `output` formats results as tables, files and JSON objects. Results go to standard output, everything else to standard error. `--output json`
 //! prints exactly one object.
 pub(crate) mod argument;

@@ -8,10 +8,10 @@ use super::{
 };
 use journal::account::AccountBuilder;
 use journal::event::{Asked, Event, Finished};
-use journal::{Damage, JournalEntry, fold};
-use protocol::{case::Case, id::JobId, job::Individual};
+use journal::{Answers, Damage, JournalEntry, fold};
+use protocol::{case::Case, job::Individual};
 use std::{
-    collections::{BTreeMap, BTreeSet},
+    collections::BTreeMap,
     path::{Path, PathBuf},
 };
 
@@ -41,12 +41,7 @@ pub struct Store<'a> {
     draft: Draft,
     book: TableWriter,
     tables: Tables,
-    /// Requests without a result so far.
-    asked: BTreeMap<JobId, Asked>,
-    /// Jobs with a result, of which the first counts.
-    finished: BTreeSet<JobId>,
-    /// Number of results whose request cannot be read.
-    unknown: usize,
+    answers: Answers,
 }
 
 impl<'a> Store<'a> {
@@ -67,9 +62,7 @@ impl<'a> Store<'a> {
             draft,
             book,
             tables,
-            asked: BTreeMap::new(),
-            finished: BTreeSet::new(),
-            unknown: 0,
+            answers: Answers::default(),
         })
     }
 
@@ -113,7 +106,7 @@ impl<'a> Store<'a> {
             self.book.add_row::<Damage>(&self.tables.damage, damage)?;
         }
         self.fact("processes", &account.processes.to_string())?;
-        self.fact("results", &self.finished.len().to_string())?;
+        self.fact("results", &self.answers.results().to_string())?;
         self.fact("failed_attempts", &account.failed.to_string())?;
         self.fact("accounted_wall_s", &account.wall_s.to_string())?;
         let lost: u64 = account.damage.iter().map(|damage| damage.bytes).sum();
@@ -121,8 +114,8 @@ impl<'a> Store<'a> {
         self.fact("journal_bytes_lost", &lost.to_string())?;
         Ok(Contents {
             damage: report.damage,
-            unanswered: self.asked.len(),
-            unknown: self.unknown,
+            unanswered: self.answers.unanswered(),
+            unknown: self.answers.unknown(),
         })
     }
 
@@ -138,13 +131,11 @@ impl<'a> Store<'a> {
             ..Happened::default()
         };
         let happened = match event {
-            Event::Finished(finished) => return self.result(&finished),
-            Event::Asked(asked) => {
-                if !self.finished.contains(&asked.job) {
-                    self.asked.insert(asked.job, *asked);
-                }
-                return Ok(());
+            Event::Finished(finished) => {
+                self.result(&finished)?;
+                return self.answer(Event::Finished(finished));
             }
+            asked @ Event::Asked(_) => return self.answer(asked),
             // repeated at each opening, told by the account, or found by the study alone
             Event::Begun { .. } | Event::Accounted(_) | Event::Found { .. } => return Ok(()),
             Event::Opened { at_unix_ms, .. } => Happened {
@@ -193,15 +184,15 @@ impl<'a> Store<'a> {
             };
             self.book.add_row(&self.tables.scores, &scored)?;
         }
-        self.book.add_row(&self.tables.results, &brief)?;
-        if !self.finished.insert(brief.job) {
-            return Ok(());
+        self.book.add_row(&self.tables.results, &brief)
+    }
+
+    /// Adds a request or a result, and the row of the pair that it completes.
+    fn answer(&mut self, event: Event) -> Result<(), StoreError> {
+        match self.answers.pair(event) {
+            Some((asked, finished)) => self.evaluation(asked, Brief::of(&finished)),
+            None => Ok(()),
         }
-        if let Some(asked) = self.asked.remove(&brief.job) {
-            return self.evaluation(asked, brief);
-        }
-        self.unknown += 1;
-        Ok(())
     }
 
     /// Adds a requested job with its result; a job that simulates nothing is left out.

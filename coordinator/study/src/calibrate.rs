@@ -62,6 +62,8 @@ pub async fn calibrate<E: Evaluator>(
         view.plan(&strategy.progress());
         watch.progress(&view, &|| evaluator.workers_status());
         if let (Some(finish), Some(best)) = (strategy.finished(), strategy.best()) {
+            // which further results have come depends on the order of arrival
+            log.truncate(strategy.archive().entries().len() as u64);
             return if best.complete {
                 Ok(Calibrated {
                     best,

@@ -14,13 +14,14 @@ use super::{
     stop::Stop,
     watch::Watch,
 };
+use discrepancy::identify::UnknownEstimate;
 use journal::{
+    Answers,
     account::{AccountBuilder, Costs, JobCost, RunAccount},
     event::{Asked, Event, Finished},
 };
 use protocol::{
     case::Case,
-    id::JobId,
     job::{Curves, Evaluation, Outcome},
 };
 use search::strategy::{Proposal, Purpose, Strategy};
@@ -84,6 +85,7 @@ pub async fn calibrate_case<E: Evaluator>(
         best: calibrated.best.clone(),
         finish: calibrated.finish,
         descent_ends: calibrated.descent_ends.clone(),
+        evaluations: calibrated.log.len() as u64,
         digest: calibrated.log.digest(),
     })?;
     Ok(CalibrationResult {
@@ -98,6 +100,8 @@ pub async fn calibrate_case<E: Evaluator>(
 pub struct RecordedCalibration {
     /// Result of the calibration.
     pub result: CalibrationResult,
+    /// First-order estimates of the unknowns; empty where they cannot be estimated.
+    pub estimates: Vec<UnknownEstimate>,
     /// Use of the workers over all processes of the run.
     pub account: RunAccount,
     /// Cost of each job.
@@ -109,31 +113,29 @@ pub struct RecordedCalibration {
 /// # Errors
 /// [`RecordError`] if the journal cannot be read, the calibration has not been finished, or results are missing.
 pub fn read_calibration(path: &Path, case: &Case) -> Result<RecordedCalibration, RecordError> {
-    let mut reading = CalibrationReader::default();
+    let (mut reading, mut answers) = (CalibrationReader::default(), Answers::default());
     let (mut account, mut costs) = (AccountBuilder::default(), Costs::new());
-    let entries = read_entries(path, |event| {
+    let (entries, damage) = read_entries(path, |event| {
         account.apply(&event);
-        match event {
-            Event::Asked(asked) => {
-                reading.asked.entry(asked.job).or_insert(*asked);
-            }
-            Event::Finished(finished) => {
-                costs.insert(finished.job().0, JobCost::of(&finished));
-                reading.finish(*finished);
-            }
-            Event::Begun { .. }
-            | Event::Opened { .. }
-            | Event::Joined { .. }
-            | Event::Left { .. }
-            | Event::Closed
-            | Event::Proved { .. }
-            | Event::Accounted(_)
-            | Event::Found { .. } => {}
+        if let Event::Finished(finished) = &event {
+            let cost = JobCost::of(finished);
+            costs.entry(finished.job().0).or_insert(cost);
+        }
+        if let Some((asked, finished)) = answers.pair(event) {
+            reading.answer(asked, finished);
         }
     })?;
+    let estimates = entries.iter().find_map(|entry| {
+        let Entry::Estimated(estimates) = entry else {
+            return None;
+        };
+        Some(estimates.clone())
+    });
+    let estimates = estimates.ok_or(RecordError::Unfinished)?;
     Ok(RecordedCalibration {
         result: reading.result(case, entries)?,
-        account: account.finish(Vec::new()),
+        estimates,
+        account: account.finish(damage),
         costs,
     })
 }
@@ -141,8 +143,6 @@ pub fn read_calibration(path: &Path, case: &Case) -> Result<RecordedCalibration,
 /// Fold of a calibration's events.
 #[derive(Default)]
 struct CalibrationReader {
-    /// Requests without a result so far.
-    asked: BTreeMap<JobId, Asked>,
     log: EvaluationLog,
     /// Scores and curves of compared individuals by condition and position.
     scores: BTreeMap<(usize, usize), Evaluation>,
@@ -150,12 +150,9 @@ struct CalibrationReader {
 }
 
 impl CalibrationReader {
-    /// Takes the first result of a job whose request was read; without residual, which only the search needs.
-    fn finish(&mut self, finished: Finished) {
-        let id = finished.job();
-        let Some(asked) = self.asked.remove(&id) else {
-            return;
-        };
+    /// Takes a requested job with its result.
+    fn answer(&mut self, asked: Asked, finished: Finished) {
+        let id = asked.job;
         let genes = asked.individual.map(|own| own.genes).unwrap_or_default();
         if let Some(place) = compared_individual(id) {
             let Outcome::Done(answer) = finished.outcome else {
@@ -183,7 +180,11 @@ impl CalibrationReader {
         }
     }
 
-    fn result(self, case: &Case, entries: Vec<Entry>) -> Result<CalibrationResult, RecordError> {
+    fn result(
+        mut self,
+        case: &Case,
+        entries: Vec<Entry>,
+    ) -> Result<CalibrationResult, RecordError> {
         let mut all_notes = Vec::new();
         let mut concluded = None;
         for entry in entries {
@@ -193,9 +194,14 @@ impl CalibrationReader {
                     best,
                     finish,
                     descent_ends,
+                    evaluations,
                     digest,
-                } => concluded = Some((best, finish, descent_ends, digest)),
-                Entry::Records(_)
+                } => {
+                    self.log.truncate(evaluations);
+                    concluded = Some((best, finish, descent_ends, digest));
+                }
+                Entry::Record(_)
+                | Entry::Estimated(_)
                 | Entry::Diagnosed(_)
                 | Entry::Identified(_)
                 | Entry::Swept(_)

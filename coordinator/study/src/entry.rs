@@ -1,7 +1,10 @@
 //! Entries of a study in its journal: what it found and concluded, as plain data.
 use super::orthogonal::{TestResult, TrialRun};
 use discrepancy::{
-    diagnose::Diagnosis, identify::IdentificationResult, laboratory::Stage, record::Record,
+    diagnose::Diagnosis,
+    identify::{IdentificationResult, UnknownEstimate},
+    laboratory::Stage,
+    record::Record,
 };
 use protocol::announce::EffectDescriptor;
 use search::strategy::{Best, DescentEnd, Finish};
@@ -11,8 +14,8 @@ use serde::{Deserialize, Serialize};
 /// makes the same entries again. The form of entries belongs to the journal's version ([`journal::VERSION`]).
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub enum Entry {
-    /// Measured records that the study uses, cycle by cycle.
-    Records(Vec<Record>),
+    /// Measured record that the study uses, or further cycles of the one before, if it has the same condition.
+    Record(Record),
     /// Notes about the case and its records, one sentence each.
     Noted(Vec<String>),
     /// Result of the search of a calibration; its evaluations are the recorded jobs.
@@ -23,9 +26,13 @@ pub enum Entry {
         finish: Finish,
         /// Ends of the search's least-squares descents that converged.
         descent_ends: Vec<DescentEnd>,
+        /// Number of evaluations in the evaluation log; those with higher ids were not used.
+        evaluations: u64,
         /// Digest of the evaluation log.
         digest: String,
     },
+    /// First-order estimates of the unknowns of a calibration, its last entry; none where they cannot be estimated.
+    Estimated(Vec<UnknownEstimate>),
     /// Result of a diagnosis.
     Diagnosed(Box<DiagnosisResult>),
     /// Result of an identification.
@@ -34,13 +41,49 @@ pub enum Entry {
     Swept(Vec<TrialRun>),
     /// Result of an orthogonal test.
     Tested(Box<TestResult>),
-    /// Individuals of a table, of which each has been evaluated; their results are the recorded jobs.
+    /// Individuals of a table, of which each has been evaluated; their results are the recorded jobs. The rows of all
+    /// such entries follow each other.
     Table {
         /// Names of the columns.
         names: Vec<String>,
         /// Values of the searched unknowns of each individual, in declared units.
         rows: Vec<Vec<f64>>,
+        /// Number of rows of the whole table.
+        total: u64,
     },
+}
+
+/// Length of what one entry holds of a record or a table (values), far below what a record of the journal may hold.
+const LONGEST: usize = 500_000;
+
+impl Entry {
+    /// Returns the entries of measured records.
+    pub fn records(records: &[Record]) -> Vec<Self> {
+        let parts = records.iter().flat_map(|record| {
+            let values = |cycle: &Vec<Vec<f64>>| cycle.iter().map(Vec::len).sum::<usize>();
+            let longest = record.cycles.iter().map(values).max().unwrap_or_default();
+            let count = (LONGEST / longest.max(1)).max(1);
+            let of = |from: usize| Self::Record(record.part(from..from + count));
+            (0..record.cycles.len().max(1))
+                .step_by(count)
+                .map(of)
+                .collect::<Vec<_>>()
+        });
+        parts.collect()
+    }
+
+    /// Returns the entries of a table of individuals.
+    pub fn table(names: &[String], rows: &[Vec<f64>]) -> Vec<Self> {
+        let count = (LONGEST / names.len().max(1)).max(1);
+        let part = |rows: &[Vec<f64>], total| Self::Table {
+            names: names.to_vec(),
+            rows: rows.to_vec(),
+            total,
+        };
+        rows.chunks(count)
+            .map(|own| part(own, rows.len() as u64))
+            .collect()
+    }
 }
 
 /// Result of a diagnosis of model deficiencies, with what it considered and the cost of its experiments.

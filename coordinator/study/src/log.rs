@@ -131,6 +131,11 @@ impl EvaluationLog {
         hasher.finalize().to_hex().to_string()
     }
 
+    /// Removes the entries with ids from `count` on.
+    pub(super) fn truncate(&mut self, count: u64) {
+        self.entries.split_off(&count);
+    }
+
     pub(super) fn insert(&mut self, entry: LogEntry) {
         self.entries.insert(entry.id, entry);
     }

@@ -3,8 +3,8 @@ use super::entry::{DiagnosisResult, Entry, IdentificationStudy};
 use super::evaluate::{Scored, scored};
 use super::orthogonal::{TestResult, TrialRun};
 use discrepancy::record::Record;
-use journal::{JournalError, event::Event};
-use protocol::{id::JobId, wire};
+use journal::{Answers, Damage, JournalError, event::Event};
+use protocol::wire;
 use std::{collections::BTreeMap, path::Path, time::Duration};
 
 /// Reason why the result of a run cannot be read from its journal.
@@ -30,6 +30,8 @@ pub struct RecordedDiagnosis {
     pub records: Vec<Record>,
     /// Slot time of the simulations of each purpose, by its name; those of a stage have the stage's name.
     pub slot_times: BTreeMap<String, Duration>,
+    /// Stretches of the journal that cannot be read.
+    pub damage: Vec<Damage>,
 }
 
 /// Reads a finished diagnosis from its journal.
@@ -37,32 +39,24 @@ pub struct RecordedDiagnosis {
 /// # Errors
 /// [`RecordError`] if the journal cannot be read, or the diagnosis has not been finished.
 pub fn read_diagnosis(path: &Path) -> Result<RecordedDiagnosis, RecordError> {
-    let (mut reasons, mut slot_times) = (BTreeMap::<JobId, String>::new(), BTreeMap::new());
-    let entries = read_entries(path, |event| match event {
-        Event::Asked(asked) => drop(reasons.insert(asked.job, asked.reason.purpose)),
-        Event::Finished(finished) => {
-            // the first result of a job counts
-            if let Some(purpose) = reasons.remove(&finished.job()) {
-                let time: &mut Duration = slot_times.entry(purpose).or_default();
-                *time += Duration::from_micros(finished.cost.wall_us);
-            }
+    let (mut answers, mut slot_times) = (Answers::default(), BTreeMap::new());
+    let (entries, damage) = read_entries(path, |event| {
+        if let Some((asked, finished)) = answers.pair(event) {
+            let time: &mut Duration = slot_times.entry(asked.reason.purpose).or_default();
+            *time += Duration::from_micros(finished.cost.wall_us);
         }
-        Event::Begun { .. }
-        | Event::Opened { .. }
-        | Event::Joined { .. }
-        | Event::Left { .. }
-        | Event::Closed
-        | Event::Proved { .. }
-        | Event::Accounted(_)
-        | Event::Found { .. } => {}
     })?;
-    let (mut result, mut records) = (None, Vec::new());
+    let (mut result, mut records) = (None, Vec::<Record>::new());
     for entry in entries {
         match entry {
-            Entry::Records(own) => records = own,
+            Entry::Record(own) => match records.last_mut() {
+                Some(last) if last.condition == own.condition => last.cycles.extend(own.cycles),
+                Some(_) | None => records.push(own),
+            },
             Entry::Diagnosed(own) => result = Some(*own),
             Entry::Noted(_)
             | Entry::Calibrated { .. }
+            | Entry::Estimated(_)
             | Entry::Identified(_)
             | Entry::Swept(_)
             | Entry::Tested(_)
@@ -73,6 +67,7 @@ pub fn read_diagnosis(path: &Path) -> Result<RecordedDiagnosis, RecordError> {
         result: result.ok_or(RecordError::Unfinished)?,
         records,
         slot_times,
+        damage,
     })
 }
 
@@ -136,36 +131,27 @@ pub fn read_table(
     expand: impl Fn(&[f64]) -> Vec<f64>,
 ) -> Result<RecordedTable, RecordError> {
     let bits = |genes: &[f64]| -> Vec<u64> { genes.iter().map(|gene| gene.to_bits()).collect() };
-    let (mut asked, mut found) = (BTreeMap::new(), BTreeMap::new());
-    let entries = read_entries(path, |event| match event {
-        Event::Asked(own) => {
-            let individual = own.individual.map(|individual| bits(&individual.genes));
-            asked.insert(own.job, individual.unwrap_or_default());
+    let (mut answers, mut found) = (Answers::default(), BTreeMap::new());
+    let (entries, _) = read_entries(path, |event| {
+        if let Some((asked, finished)) = answers.pair(event)
+            && let Some(individual) = asked.individual
+            && let Ok(scored) = scored(asked.job, finished.outcome)
+        {
+            found.insert(bits(&individual.genes), scored);
         }
-        Event::Finished(finished) => {
-            let id = finished.job();
-            if let Some(genes) = asked.remove(&id)
-                && let Ok(scored) = scored(id, finished.outcome)
-            {
-                found.entry(genes).or_insert(scored);
-            }
-        }
-        Event::Begun { .. }
-        | Event::Opened { .. }
-        | Event::Joined { .. }
-        | Event::Left { .. }
-        | Event::Closed
-        | Event::Proved { .. }
-        | Event::Accounted(_)
-        | Event::Found { .. } => {}
     })?;
-    let table = entries.into_iter().find_map(|entry| {
-        let Entry::Table { names, rows } = entry else {
-            return None;
-        };
-        Some((names, rows))
-    });
-    let (names, rows) = table.ok_or(RecordError::Unfinished)?;
+    let mut table = (Vec::new(), Vec::new(), None);
+    for entry in entries {
+        if let Entry::Table { names, rows, total } = entry {
+            table.0 = names;
+            table.1.extend(rows);
+            table.2 = Some(total);
+        }
+    }
+    let (names, rows, total) = table;
+    if total != Some(rows.len() as u64) {
+        return Err(RecordError::Unfinished);
+    }
     let scores = rows
         .iter()
         .map(|row| found.get(&bits(&expand(row))).cloned());
@@ -179,23 +165,25 @@ pub fn read_table(
 
 /// Reads the first entry that `take` accepts.
 fn read_entry<T>(path: &Path, take: impl FnMut(Entry) -> Option<T>) -> Result<T, RecordError> {
-    let entries = read_entries(path, |_| ())?;
+    let (entries, _) = read_entries(path, |_| ())?;
     entries
         .into_iter()
         .find_map(take)
         .ok_or(RecordError::Unfinished)
 }
 
-/// Reads the entries of a study in their order, and calls `apply` with every event of the journal.
+/// Reads the entries of a study in their order, and the stretches of the journal that cannot be read; calls `apply` with
+/// every event.
 ///
 /// # Errors
-/// [`RecordError::Journal`] if the journal cannot be read.
+/// [`RecordError::Journal`] if the journal cannot be read, [`RecordError::Incomplete`] if an entry is missing before
+/// the last one.
 pub(super) fn read_entries(
     path: &Path,
     mut apply: impl FnMut(Event),
-) -> Result<Vec<Entry>, RecordError> {
-    let (mut entries, mut unreadable) = (BTreeMap::new(), None);
-    journal::fold(path, |at, event| {
+) -> Result<(Vec<Entry>, Vec<Damage>), RecordError> {
+    let (mut entries, mut unreadable) = (BTreeMap::<u64, Entry>::new(), None);
+    let report = journal::fold(path, |at, event| {
         if let Event::Found { number, entry } = &event {
             match wire::decode::<Entry>(entry) {
                 Ok(entry) => drop(entries.entry(*number).or_insert(entry)),
@@ -208,5 +196,12 @@ pub(super) fn read_entries(
         let path = path.to_owned();
         return Err(JournalError::Undecodable { path, at }.into());
     }
-    Ok(entries.into_values().collect())
+    if entries
+        .keys()
+        .zip(0..)
+        .any(|(number, expected)| *number != expected)
+    {
+        return Err(RecordError::Incomplete);
+    }
+    Ok((entries.into_values().collect(), report.damage))
 }

@@ -30,9 +30,9 @@ const TRIES: u32 = 100;
 /// # Errors
 /// The error of the operating system if no folder can be created.
 pub(super) fn below(parent: &Path) -> io::Result<PathBuf> {
-    let plain = format!("horsehead-{}", geteuid().as_raw());
+    let plain = plain_name();
     for try_number in 0..TRIES {
-        if let Some(found) = existing(parent, &plain) {
+        if let Some(found) = existing(parent) {
             return Ok(found);
         }
         let name = if try_number == 0 {
@@ -53,13 +53,19 @@ pub(super) fn below(parent: &Path) -> io::Result<PathBuf> {
     Err(io::Error::other(message))
 }
 
-/// Returns the first folder below `parent` by name that [`below`] has created for this user.
-fn existing(parent: &Path, plain: &str) -> Option<PathBuf> {
+/// Returns the first name that [`below`] tries.
+fn plain_name() -> String {
+    format!("horsehead-{}", geteuid().as_raw())
+}
+
+/// Returns the first folder below `parent` by name that [`below`] has created for this user; `None` if there is none.
+pub(super) fn existing(parent: &Path) -> Option<PathBuf> {
+    let plain = plain_name();
     let entries = fs::read_dir(parent).into_iter().flatten().flatten();
     let mut names: Vec<String> = entries
         .filter_map(|entry| entry.file_name().into_string().ok())
         .filter(|name| {
-            let rest = name.strip_prefix(plain);
+            let rest = name.strip_prefix(&plain);
             rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('-'))
         })
         .collect();

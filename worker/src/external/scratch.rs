@@ -166,7 +166,8 @@ fn bytes(folder: &Path) -> u64 {
 
 /// Removes the folders of processes that no longer exist from the own folder below `parent`.
 pub(super) fn clean(parent: &Path) {
-    let Ok(own) = own_folder::below(parent).and_then(|path| OpenFolder::open(&path)) else {
+    let own = own_folder::existing(parent).and_then(|path| OpenFolder::open(&path).ok());
+    let Some(own) = own else {
         return;
     };
     let names = own.names(|name| name.to_bytes().starts_with(PREFIX.as_bytes()));

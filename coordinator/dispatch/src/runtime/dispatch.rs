@@ -72,7 +72,7 @@ impl Dispatch {
             Some(_) => Some(locate::worker_program()?),
             None => None,
         };
-        let parts = Parts::open(&options)?;
+        let (parts, entries) = Parts::open(&options)?;
         let (run, blob) = (parts.run, parts.blob.clone());
         let insecure = options.insecure;
         let link_options = CoordinatorOptions {
@@ -92,7 +92,7 @@ impl Dispatch {
             _ => None,
         };
         let only_local = options.listen.is_none();
-        let mut open = Self::begin(parts, link, workers, only_local, listening);
+        let mut open = Self::begin((parts, entries), link, workers, only_local, listening);
         open.socket_folder = folder;
         // a sender of its own would keep the run open for ever
         let requests = open.requests.downgrade();
@@ -117,20 +117,19 @@ impl Dispatch {
         options: &DispatchOptions,
         make: impl FnOnce(RunId, Blob) -> L,
     ) -> Result<Self, DispatchError> {
-        let parts = Parts::open(options)?;
+        let (parts, entries) = Parts::open(options)?;
         let link = make(parts.run, parts.blob.clone());
-        Ok(Self::begin(parts, link, None, false, Vec::new()))
+        Ok(Self::begin((parts, entries), link, None, false, Vec::new()))
     }
 
     fn begin<L: CoordinatorEnd>(
-        parts: Parts,
+        (parts, entries): (Parts, StudyEntries),
         link: L,
         workers: Option<LocalWorkers>,
         only_local: bool,
         listening: Vec<Locator>,
     ) -> Self {
         let recorded = parts.journal.len();
-        let entries = parts.entries.clone();
         let (requests, asked) = unbounded_channel();
         let (deliver, completed) = unbounded_channel();
         let snapshot = Arc::new(Mutex::new(Snapshot::default()));

@@ -217,9 +217,13 @@ impl<L: CoordinatorEnd> Engine<L> {
     fn submit(&mut self, jobs: Vec<(JobId, Job, JobReason)>) {
         let mut new = Vec::with_capacity(jobs.len());
         for (id, job, reason) in jobs {
-            if self.is_new(id, &job) {
+            let is_new = self.is_new(id, &job);
+            // of a job with a result the request may have been lost to damage
+            if is_new || !self.journal.holds_request(id) {
                 let asked = Asked::new(id, &job, reason);
                 self.record(Event::Asked(Box::new(asked)));
+            }
+            if is_new {
                 new.push((id, job));
             }
         }

@@ -19,15 +19,14 @@ pub(super) struct Parts {
     pub(super) run: RunId,
     pub(super) core: Core,
     pub(super) journal: Journal,
-    pub(super) entries: StudyEntries,
     pub(super) said: UnboundedReceiver<WriterReport>,
     pub(super) blob: Blob,
     pub(super) pause_limit: Duration,
 }
 
 impl Parts {
-    /// Opens or creates the journal, and initialises the core from it.
-    pub(super) fn open(options: &DispatchOptions) -> Result<Self, DispatchError> {
+    /// Opens or creates the journal, and initialises the core from it; also returns the entries of the study.
+    pub(super) fn open(options: &DispatchOptions) -> Result<(Self, StudyEntries), DispatchError> {
         let now = SystemTime::now()
             .duration_since(UNIX_EPOCH)
             .unwrap_or_default();
@@ -71,14 +70,14 @@ impl Parts {
                 ..Policy::of(&options.case)
             },
         });
-        Ok(Self {
+        let parts = Self {
             run: begun.run,
             core,
             journal,
-            entries: begun.entries,
             said,
             blob,
             pause_limit: options.pause_limit,
-        })
+        };
+        Ok((parts, begun.entries))
     }
 }

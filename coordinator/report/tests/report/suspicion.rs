@@ -555,6 +555,7 @@ pub(crate) fn diagnosis(verdict: Verdict) -> SampleDiagnosis {
             },
             records,
             slot_times: slot_times(),
+            damage: Vec::new(),
         },
     }
 }

@@ -15,7 +15,6 @@ use crate::cli::{
     },
     run::{
         calibration::{Calibration, calibrate, identifiability},
-        folder::IDENTIFIABILITY,
         manifest::{self, DEFAULT_PRESET, FirstTable, Manifest, Start},
         name::RunName,
         opened::Run,
@@ -31,7 +30,7 @@ use search::{
     strategy::{CATALOGUE, SearchPlan, Settings, build_after, preset},
 };
 use std::path::{Path, PathBuf};
-use study::Watch as _;
+use study::{Entry, Evaluator as _, Watch as _};
 
 /// Fit the unknowns of a case to its records; the same command resumes.
 #[derive(Debug, Args)]
@@ -221,8 +220,8 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         display.clear();
         let best = found?.calibrated.best.genes;
         let seen = identifiability(bus, &run, &best, &mut Silent, stop).await?;
-        let unknowns = seen.as_ref().map_or(&[][..], |seen| &seen.unknowns);
-        run.folder.write_json(IDENTIFIABILITY, &unknowns)?;
+        let estimates = seen.as_ref().map(|seen| seen.unknowns.clone());
+        bus.enter(&Entry::Estimated(estimates.unwrap_or_default()))?;
         let kind = case::kind::of(&run.case);
         if let Some((name, bytes)) = seen.and_then(|seen| kind.jacobian_file(&run.case, &seen)) {
             run.folder.write(name, &bytes)?;

@@ -50,6 +50,7 @@ fn manifest(case: &Case, seed: u64) -> Manifest {
         measured: "X".to_owned(),
         synthetic: false,
         notes: Vec::new(),
+        effects: Vec::new(),
         wall_s: 0.0,
     }
 }

@@ -10,7 +10,7 @@ use crate::cli::{
     argument::output::Output,
     run::{
         calibration::{Calibration as Run, recorded},
-        folder::{GENES, IDENTIFIABILITY, RESULT},
+        folder::{GENES, RESULT},
         tables,
     },
 };
@@ -66,6 +66,7 @@ pub(crate) fn report_run(curves: &ComparedCurves) -> report::Run {
 /// As [`recorded`], and if a file cannot be written.
 pub(crate) fn show(run: &Run, wall_s: f64, output: Output) -> anyhow::Result<()> {
     let recorded = recorded(run)?;
+    terminal::damage(&recorded.account.damage);
     let calibration = calibration(run, &recorded, wall_s)?;
     let found = &recorded.result;
     let folder = &run.folder;
@@ -184,15 +185,13 @@ pub(crate) fn calibration(
     let case = &run.case;
     let RecordedCalibration {
         result: found,
+        estimates: identifiability,
         account,
         costs,
     } = recorded;
     let Calibrated {
         best, finish, log, ..
     } = &found.calibrated;
-    // a run of before this was looked at has none
-    let identifiability: Vec<UnknownEstimate> =
-        run.folder.read_json(IDENTIFIABILITY).unwrap_or_default();
     let mut notes = [&run.manifest.notes[..], &found.notes].concat();
     if !best.complete {
         notes.push("no individual completed its simulation".to_owned());
@@ -221,8 +220,8 @@ pub(crate) fn calibration(
             Finish::Threshold => "the fitness threshold was reached".to_owned(),
         },
         conditions: found.compared.iter().filter_map(condition_result).collect(),
-        rivals: rival_fits(run, &found.calibrated, &identifiability)?,
-        identifiability,
+        rivals: rival_fits(run, &found.calibrated, identifiability)?,
+        identifiability: identifiability.clone(),
         notes,
     })
 }

@@ -56,7 +56,7 @@ impl<'a> DiagnosisOutput<'a> {
         };
         let about = format!("Parameters of {}", self.run.folder.path().display());
         let found = report::effects(&self.subject()?);
-        let effects = [&CaseEffect::all_of(&self.run.case)[..], &found].concat();
+        let effects = [&self.run.manifest.effects[..], &found].concat();
         self.run
             .folder
             .write_genes(&self.run.case, &fit.genes, &effects, &about)
@@ -65,6 +65,7 @@ impl<'a> DiagnosisOutput<'a> {
     /// Writes the result files of the diagnosis into the run folder and returns the object for `--output
     /// json`.
     pub(crate) fn write(&self) -> anyhow::Result<DiagnoseOutput> {
+        terminal::damage(&self.recorded.damage);
         let subject = self.subject()?;
         if let Some(text) = report::effects_toml(&subject) {
             self.run.folder.write("effects.toml", &text)?;

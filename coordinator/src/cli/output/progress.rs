@@ -181,7 +181,7 @@ impl Pace {
     }
 }
 
-/// Progress display that shows notes alone, for replays, which are short and have no live workers.
+/// Progress display that shows notes alone, for a step that is short.
 pub(crate) struct Silent;
 
 impl<V: View> Watch<V> for Silent {

@@ -1,5 +1,6 @@
 //! Terminal output: results on standard output, everything else on standard error.
 use crate::cli::argument::output::Output;
+use journal::{Damage, describe_damage};
 use report::document::TerminalStyle;
 use rustix::termios::tcgetwinsize;
 use serde::Serialize;
@@ -84,4 +85,11 @@ pub(crate) fn style() -> TerminalStyle {
 
 fn colourless() -> bool {
     std::env::var_os("NO_COLOR").is_some_and(|set| !set.is_empty())
+}
+
+/// Tells on standard error which stretches of a journal cannot be read.
+pub(crate) fn damage(stretches: &[Damage]) {
+    for stretch in describe_damage(stretches) {
+        tell(&format!("warning: {stretch}"));
+    }
 }

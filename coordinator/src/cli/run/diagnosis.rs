@@ -53,12 +53,13 @@ pub(crate) async fn diagnose<E: Evaluator>(
     watch: &mut dyn Watch<StageView>,
     stop: &mut Stop,
 ) -> anyhow::Result<()> {
-    evaluator.enter(&Entry::Records(loaded.cycles.clone()))?;
+    for record in Entry::records(&loaded.cycles) {
+        evaluator.enter(&record)?;
+    }
     let library = study::library(evaluator, stop).await?;
     let notes = study::check_records(evaluator, &loaded.case, &loaded.cycles, stop).await?;
     watch.noted(&notes);
     evaluator.enter(&Entry::Noted(notes.clone()))?;
-    let notes = [&manifest.notes[..], &notes].concat();
     let off = InactiveUnknowns::of(&loaded.case.unknowns);
     for id in &manifest.settings.thresholds.without {
         let mut known = library.iter().chain(off.iter().map(|off| &off.candidate));
@@ -107,7 +108,11 @@ pub(crate) async fn diagnose<E: Evaluator>(
 /// # Errors
 /// If the diagnosis is not finished, or its journal is missing or of another version.
 pub(crate) fn recorded(run: &Diagnosis) -> anyhow::Result<RecordedDiagnosis> {
-    study::read_diagnosis(&run.expect_journal()?).map_err(|error| run.unreadable(error))
+    let read = study::read_diagnosis(&run.expect_journal()?);
+    let mut recorded = read.map_err(|error| run.unreadable(error))?;
+    let of_case = run.manifest.notes.iter().cloned();
+    recorded.result.notes.splice(..0, of_case);
+    Ok(recorded)
 }
 
 /// Returns the preset of the search that finds the basin of attraction of the fit: `quick` if the case

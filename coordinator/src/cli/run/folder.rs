@@ -25,8 +25,6 @@ pub(crate) const MANIFEST: &str = "run.json";
 pub(crate) const CASE: &str = "case.json";
 /// Name of the file that holds the output of a finished run.
 pub(crate) const RESULT: &str = "result.json";
-/// Name of the file with the first-order identifiability of a calibration's unknowns.
-pub(crate) const IDENTIFIABILITY: &str = "seen.json";
 /// Name of the gene file with the parameter values that a run found.
 pub(crate) const GENES: &str = "calibrated.toml";
 

@@ -46,12 +46,13 @@ pub(crate) async fn identify<E: Evaluator>(
     watch: &mut dyn Watch<StageView>,
     stop: &mut Stop,
 ) -> anyhow::Result<()> {
-    evaluator.enter(&Entry::Records(loaded.cycles.clone()))?;
+    for record in Entry::records(&loaded.cycles) {
+        evaluator.enter(&record)?;
+    }
     let library = study::library(evaluator, stop).await?;
     let notes = study::check_records(evaluator, &loaded.case, &loaded.cycles, stop).await?;
     watch.noted(&notes);
     evaluator.enter(&Entry::Noted(notes.clone()))?;
-    let notes = [&manifest.notes[..], &notes].concat();
     let own = &manifest.settings;
     let thresholds = Thresholds {
         orders: own.orders,
@@ -87,5 +88,9 @@ pub(crate) async fn identify<E: Evaluator>(
 /// # Errors
 /// If the analysis is not finished, or its journal is missing or of another version.
 pub(crate) fn recorded(run: &Identification) -> anyhow::Result<IdentificationStudy> {
-    study::read_identification(&run.expect_journal()?).map_err(|error| run.unreadable(error))
+    let read = study::read_identification(&run.expect_journal()?);
+    let mut recorded = read.map_err(|error| run.unreadable(error))?;
+    let of_case = run.manifest.notes.iter().cloned();
+    recorded.notes.splice(..0, of_case);
+    Ok(recorded)
 }

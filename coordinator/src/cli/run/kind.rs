@@ -42,7 +42,8 @@ impl AnyRun {
             IDENTIFY => Ok(Self::Identification(Run::open(path)?)),
             other => Err(Problem {
                 message: format!("{} holds a run of `horsehead {other}`", path.display()),
-                remedy: "name the folder of a calibration, a diagnosis or an identification"
+                remedy: "name the folder of a calibration, a diagnosis, an identification, a grid, a table or an orthogonal test; \
+                         `horsehead export` takes the others"
                     .to_owned(),
             }
             .into()),

@@ -113,6 +113,9 @@ pub(crate) struct Manifest<S = Settings> {
     pub(crate) synthetic: bool,
     /// Notes about the case and its records.
     pub(crate) notes: Vec<String>,
+    /// Effects of the case as it states them, with interval and provenance, which the case of the run does not hold.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(crate) effects: Vec<CaseEffect>,
     /// Total wall time of the run's finished sessions (s).
     pub(crate) wall_s: f64,
 }
@@ -276,6 +279,7 @@ impl<S: RunIdentity> Manifest<S> {
             measured: case_folder.display().to_string(),
             synthetic: false,
             notes: Vec::new(),
+            effects: Vec::new(),
             wall_s: 0.0,
         })
     }

@@ -1,4 +1,4 @@
-//! Runs: run folders, manifests, and functions that open, resume and repeat runs.
+//! Runs: run folders, manifests, and functions that open and resume runs and read their results.
 pub(crate) mod bus;
 pub(super) mod calibration;
 pub(super) mod command_line;

@@ -25,6 +25,7 @@ pub(crate) fn run_properties<S: Serialize>(
         measured,
         synthetic,
         notes,
+        effects: _,
         wall_s,
     } = manifest;
     let start = start.as_ref().map_or_else(

@@ -129,6 +129,7 @@ impl Target {
             measured: measured.display().to_string(),
             synthetic: self.loaded.synthetic,
             notes: notes.collect(),
+            effects: self.loaded.effects.clone(),
             ..Manifest::new(&self.folder, seed, settings)?
         })
     }

@@ -2,6 +2,7 @@
 //! any record comes to the same entries of its study.
 use crate::{rig::Rig, swept::ROWS};
 use journal::{event::Event, fold};
+use serde_json::Value;
 use std::{collections::BTreeMap, fs, path::Path};
 
 /// Writes the files of a run again, and returns these, what is printed, and its tables.
@@ -79,6 +80,38 @@ fn a_run_is_shown_without_its_case_and_without_workers() {
             assert!(after[&name] == content, "{run}: {name} differs");
         }
     }
+}
+
+/// Checks that the request of a job that damage has taken is written again when the run is resumed.
+#[test]
+fn a_damaged_request_is_written_again() {
+    let rig = Rig::new();
+    let path = rig.path("run");
+    let words = ["calibrate", "CASE", "--run", &path];
+    rig.run(&words);
+    let journal = rig.file("run").join(journal::FILE);
+    let mut requests = Vec::new();
+    fold(&journal, |at, event| {
+        if matches!(event, Event::Asked(_)) {
+            requests.push(usize::try_from(at.at).unwrap());
+        }
+    })
+    .unwrap();
+    let mut bytes = fs::read(&journal).unwrap();
+    bytes[requests[requests.len() / 2]] ^= 1;
+    fs::write(&journal, bytes).unwrap();
+    let result = rig.file("run").join("result.json");
+    let digest = |file: &Path| {
+        let object: Value = serde_json::from_slice(&fs::read(file).unwrap()).unwrap();
+        object["log_digest"].clone()
+    };
+    let before = digest(&result);
+    let refused = rig.refused(&["report", &path]);
+    assert!(refused.contains("lacks results"), "{refused}");
+    rig.run(&words);
+    fs::remove_file(&result).unwrap();
+    rig.run(&["report", &path]);
+    assert_eq!(digest(&result), before);
 }
 
 /// Returns the entries of the study in a journal by number, and the offset of the end of each record.

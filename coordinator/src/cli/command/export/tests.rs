@@ -115,6 +115,7 @@ fn run_with(folder: &Path, results: usize) -> (JournalingEvaluator, Option<Calib
         measured: "X".to_owned(),
         synthetic: false,
         notes: vec!["one".to_owned(), "two, \"quoted\"".to_owned()],
+        effects: Vec::new(),
         wall_s: 1.5,
     };
     fs::create_dir_all(folder).unwrap();
@@ -135,7 +136,9 @@ fn run_with(folder: &Path, results: usize) -> (JournalingEvaluator, Option<Calib
     };
     let found = bus::block_on(async {
         let mut stop = tokio::sync::watch::channel(false).1;
-        calibrate(&mut scribe, &run, &mut Silent, &mut stop).await
+        let found = calibrate(&mut scribe, &run, &mut Silent, &mut stop).await?;
+        scribe.enter(&Entry::Estimated(Vec::new()))?;
+        anyhow::Ok(found)
     });
     (scribe, found.ok())
 }

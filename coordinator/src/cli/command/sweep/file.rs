@@ -63,7 +63,7 @@ pub(super) fn run(arguments: &FileArguments) -> anyhow::Result<()> {
     let (run, all) = begin(arguments)?;
     match (&run.manifest.settings.holds, all) {
         (FileContent::Grid(searches), _) => search(&session, &run, searches)?,
-        (FileContent::Individuals(_), all) => score(&session, &run, all)?,
+        (FileContent::Individuals(_), all) => score(&session, &run, &all)?,
     }
     show(&run, arguments.output.output)
 }
@@ -160,7 +160,7 @@ fn search(session: &Session, run: &Run<SweptFile>, searches: &Searches) -> anyho
 }
 
 /// Scores every individual of a table.
-fn score(session: &Session, run: &Run<SweptFile>, all: Individuals) -> anyhow::Result<()> {
+fn score(session: &Session, run: &Run<SweptFile>, all: &Individuals) -> anyhow::Result<()> {
     let space = Space::new(&run.case.unknowns)?;
     let individuals: Vec<Vec<f64>> = all.rows.iter().map(|row| space.expand(row)).collect();
     session.work(run, async |bus, stop| {
@@ -169,8 +169,10 @@ fn score(session: &Session, run: &Run<SweptFile>, all: Individuals) -> anyhow::R
         let found = score_all(bus, &run.case, &individuals, &mut display, stop).await;
         display.clear();
         found?;
-        let Individuals { names, rows } = all;
-        Ok(bus.enter(&Entry::Table { names, rows })?)
+        for part in Entry::table(&all.names, &all.rows) {
+            bus.enter(&part)?;
+        }
+        Ok(())
     })
 }
 

@@ -183,6 +183,7 @@ fn printed(diagnosis: Diagnosis) -> Value {
         result: diagnosed,
         records,
         slot_times: [(Stage::Test.name().to_owned(), Duration::from_millis(1500))].into(),
+        damage: Vec::new(),
     };
     let subject = DiagnosisInput {
         case: &case,
