@@ -26,8 +26,8 @@ Examples:
 
   horsehead export runs/tank --failed
 
-Works for every kind of run but scaling, while it goes on, and with a damaged journal as far as that
-goes; the journal is not changed. The table `dictionary` says what every column means.
+Works for every kind of run but scaling, while it goes on, and with a damaged journal as far as
+that goes; the journal is not changed. The table `dictionary` says what every column means.
 
 With --failed, what somebody's own program left where it failed: a folder for each individual,
 with what was filled in, what the program wrote and said, and `why.txt`. Of long files the end
