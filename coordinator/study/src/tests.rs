@@ -10,8 +10,8 @@ use protocol::{
 use search::{
     space::Space,
     strategy::{
-        Archive, Best, EvaluationResult, Finish, Progress, Proposal, Purpose, Settings, Strategy,
-        build, memetic::MemeticSettings,
+        Archive, Best, EvaluationResult, Finish, Progress, Proposal, Purpose, SearchPlan, Settings,
+        Strategy, build, memetic::MemeticSettings, preset,
     },
 };
 use tokio::sync::watch;
@@ -408,4 +408,42 @@ async fn jobs_whose_hashes_begin_alike_keep_their_own_results() {
     let done = evaluate(&mut oracle, &case, &mut asked, &mut answer, &mut stop).await;
     done.unwrap();
     assert_eq!(answers, 200);
+}
+
+/// Regression: a search that a threshold ends logged what had arrived by then, so that the digest depended on the order
+/// of arrival and a resumed run was refused.
+#[tokio::test]
+async fn a_search_that_a_threshold_ends_has_one_log() {
+    let case = case();
+    let space = Space::new(&case.unknowns).unwrap();
+    let window = preset("window").unwrap();
+    let mut settings = (window.settings)(&SearchPlan {
+        space: &space,
+        workers: 4,
+    });
+    let mut ended = Vec::new();
+    for threshold in ["0", "1e9"] {
+        window.set(&mut settings, "threshold", threshold).unwrap();
+        let mut digests = Vec::new();
+        for order in 1..5 {
+            let mut oracle = TestEvaluator::new(&case, order, physics);
+            let mut strategy = build(&settings, &oracle.space, 3).unwrap();
+            let (_sender, mut stop) = watch::channel(false);
+            let mut observer = Quiet(Vec::new());
+            let found = calibrate(
+                &mut oracle,
+                &case,
+                strategy.as_mut(),
+                &mut observer,
+                &mut stop,
+            );
+            let found = found.await.unwrap();
+            digests.push((found.finish, found.log.len(), found.log.digest()));
+        }
+        digests.dedup();
+        assert_eq!(digests.len(), 1, "threshold {threshold}: {digests:?}");
+        ended.extend(digests);
+    }
+    assert_eq!(ended[1].0, Finish::Threshold);
+    assert!(ended[1].1 < ended[0].1, "{ended:?}");
 }
