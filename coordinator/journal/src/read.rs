@@ -142,8 +142,8 @@ impl ReadError {
     }
 }
 
-/// Calls `apply` for each readable event in a medium after the offset `from` (bytes), as [`fold_from`] does for a
-/// file.
+/// Calls `apply` for each readable event in a medium after the offset `from` (bytes), which is the end of a
+/// record.
 ///
 /// # Errors
 /// [`ReadError`] as [`fold`].
