@@ -98,15 +98,11 @@ pub struct Asked {
 impl Asked {
     /// Creates the entry of a job that is requested for a reason.
     pub fn new(id: JobId, job: &Job, reason: JobReason) -> Self {
-        let columns = match job {
-            Job::Simulate(spec) => spec.columns.len(),
-            Job::Own { .. } | Job::Describe | Job::Nothing { .. } => 0,
-        };
         Self {
             job: id,
             work: job.work_hash(),
             individual: job.individual().cloned(),
-            columns: u32::try_from(columns).unwrap_or(u32::MAX),
+            columns: u32::try_from(job.columns()).unwrap_or(u32::MAX),
             reason,
         }
     }

@@ -125,15 +125,9 @@ pub fn read_calibration(path: &Path, case: &Case) -> Result<RecordedCalibration,
             reading.answer(asked, finished);
         }
     })?;
-    let estimates = entries.iter().find_map(|entry| {
-        let Entry::Estimated(estimates) = entry else {
-            return None;
-        };
-        Some(estimates.clone())
-    });
-    let estimates = estimates.ok_or(RecordError::Unfinished)?;
+    let (result, estimates) = reading.result(case, entries)?;
     Ok(RecordedCalibration {
-        result: reading.result(case, entries)?,
+        result,
         estimates,
         account: account.finish(damage),
         costs,
@@ -180,13 +174,14 @@ impl CalibrationReader {
         }
     }
 
+    /// Returns the result of the calibration, and the estimates of its unknowns.
     fn result(
         mut self,
         case: &Case,
         entries: Vec<Entry>,
-    ) -> Result<CalibrationResult, RecordError> {
+    ) -> Result<(CalibrationResult, Vec<UnknownEstimate>), RecordError> {
         let mut all_notes = Vec::new();
-        let mut concluded = None;
+        let (mut concluded, mut estimated) = (None, None);
         for entry in entries {
             match entry {
                 Entry::Noted(notes) => all_notes.extend(notes),
@@ -200,8 +195,8 @@ impl CalibrationReader {
                     self.log.truncate(evaluations);
                     concluded = Some((best, finish, descent_ends, digest));
                 }
+                Entry::Estimated(estimates) => estimated = Some(estimates),
                 Entry::Record(_)
-                | Entry::Estimated(_)
                 | Entry::Diagnosed(_)
                 | Entry::Identified(_)
                 | Entry::Swept(_)
@@ -209,7 +204,8 @@ impl CalibrationReader {
                 | Entry::Table { .. } => {}
             }
         }
-        let (best, finish, descent_ends, digest) = concluded.ok_or(RecordError::Unfinished)?;
+        let (concluded, estimates) = concluded.zip(estimated).ok_or(RecordError::Unfinished)?;
+        let (best, finish, descent_ends, digest) = concluded;
         if self.log.digest() != digest {
             return Err(RecordError::Incomplete);
         }
@@ -236,7 +232,7 @@ impl CalibrationReader {
                 individuals,
             });
         }
-        Ok(CalibrationResult {
+        let result = CalibrationResult {
             calibrated: Calibrated {
                 best,
                 finish,
@@ -245,6 +241,7 @@ impl CalibrationReader {
             },
             compared,
             notes: all_notes,
-        })
+        };
+        Ok((result, estimates))
     }
 }

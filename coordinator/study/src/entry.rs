@@ -75,14 +75,12 @@ impl Entry {
     /// Returns the entries of a table of individuals.
     pub fn table(names: &[String], rows: &[Vec<f64>]) -> Vec<Self> {
         let count = (LONGEST / names.len().max(1)).max(1);
-        let part = |rows: &[Vec<f64>], total| Self::Table {
+        let part = |own: &[Vec<f64>]| Self::Table {
             names: names.to_vec(),
-            rows: rows.to_vec(),
-            total,
+            rows: own.to_vec(),
+            total: rows.len() as u64,
         };
-        rows.chunks(count)
-            .map(|own| part(own, rows.len() as u64))
-            .collect()
+        rows.chunks(count).map(part).collect()
     }
 }
 

@@ -103,6 +103,14 @@ impl Job {
         }
     }
 
+    /// Returns the number of parameters by which the job differentiates its simulation.
+    pub const fn columns(&self) -> usize {
+        match self {
+            Self::Simulate(spec) => spec.columns.len(),
+            Self::Own { .. } | Self::Describe | Self::Nothing { .. } => 0,
+        }
+    }
+
     /// Returns the hash of the encoded job, by which equal jobs are recognised.
     pub fn work_hash(&self) -> ContentHash {
         // a job that cannot be encoded cannot be sent either; all of those share one name

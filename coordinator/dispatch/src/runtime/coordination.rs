@@ -63,13 +63,8 @@ impl Coordination {
         }
         let (count, idle) = (divisible.len(), self.core.idle_slots());
         for (id, job) in divisible {
-            let columns = match &job {
-                Job::Simulate(spec) => spec.columns.len(),
-                Job::Own { .. } | Job::Describe | Job::Nothing { .. } => 0,
-            };
-            let parts = self
-                .divided
-                .divide(id, job, part_count(columns, count, idle));
+            let parts = part_count(job.columns(), count, idle);
+            let parts = self.divided.divide(id, job, parts);
             for (id, job) in parts {
                 self.process(Input::Submit { id, job }, now);
             }
