@@ -12,6 +12,9 @@ const ARROWS: &[(&str, &str)] = &[
     ("search", "protocol"),
     ("discrepancy", "search"),
     ("discrepancy", "protocol"),
+    ("discrepancy", "record"),
+    ("record", "protocol"),
+    ("record", "search"),
     // starting workers knows neither cases nor runs
     ("launch", "link"),
     ("launch", "protocol"),
@@ -19,7 +22,7 @@ const ARROWS: &[(&str, &str)] = &[
     // reading a case knows neither runs nor pictures
     ("case", "protocol"),
     ("case", "exchange"),
-    ("case", "discrepancy"),
+    ("case", "record"),
     ("case", "support"),
     // loops over whoever evaluates
     ("study", "protocol"),
@@ -27,6 +30,7 @@ const ARROWS: &[(&str, &str)] = &[
     ("study", "journal"),
     ("study", "search"),
     ("study", "discrepancy"),
+    ("study", "record"),
     // its tests take the shipped case for an example
     ("study", "case"),
     // pages and tables: drawn from plain data, cases and journals' accounts
@@ -34,6 +38,7 @@ const ARROWS: &[(&str, &str)] = &[
     ("report", "exchange"),
     ("report", "case"),
     ("report", "discrepancy"),
+    ("report", "record"),
     ("report", "journal"),
     ("report", "study"),
     ("report", "support"),
@@ -50,11 +55,11 @@ const ARROWS: &[(&str, &str)] = &[
     ("coordinator", "study"),
     ("coordinator", "case"),
     ("coordinator", "launch"),
-    // jobs and results, whatever they are about; strategies stand in for a study on a simulated clock
     // what a run asked, was answered and found, whoever asks
     ("journal", "protocol"),
     ("journal", "support"),
     ("coordinator", "journal"),
+    // jobs and results, whatever they are about; strategies stand in for a study on a simulated clock
     ("dispatch", "journal"),
     ("dispatch", "link"),
     ("dispatch", "protocol"),
@@ -67,6 +72,7 @@ const ARROWS: &[(&str, &str)] = &[
     ("coordinator", "link"),
     ("coordinator", "search"),
     ("coordinator", "discrepancy"),
+    ("coordinator", "record"),
     // the truth generator takes from everybody, and nobody from it
     ("truth", "protocol"),
     ("truth", "simulation"),
@@ -81,9 +87,11 @@ const ARROWS: &[(&str, &str)] = &[
     ("oscillator", "coordinator"),
     ("oscillator", "journal"),
     ("oscillator", "discrepancy"),
+    ("oscillator", "record"),
     // decisions of a diagnosis on linearised cases
     ("rejudge", "case"),
     ("rejudge", "discrepancy"),
+    ("rejudge", "record"),
     ("rejudge", "protocol"),
     ("rejudge", "search"),
     ("rejudge", "worker"),
@@ -132,7 +140,14 @@ const GATED: &[(&str, &[&str])] = &[
     ),
     (
         "nalgebra",
-        &["case", "simulation", "search", "discrepancy", "oscillator"],
+        &[
+            "case",
+            "simulation",
+            "search",
+            "record",
+            "discrepancy",
+            "oscillator",
+        ],
     ),
     ("amd", &["simulation"]),
     ("faer", &["simulation"]),

@@ -3,11 +3,11 @@
 use super::folder;
 use case::{Overrides, load_with_notes};
 use discrepancy::laboratory::channels;
-use discrepancy::record::basis::ChannelGroup;
-use discrepancy::record::metric::Metric;
-use discrepancy::record::noise::Noise;
 use protocol::case::EffectSetting;
 use protocol::job::{Answer, Individual, Job, Observation, Outcome, Reply, SimulateSpec};
+use record::basis::ChannelGroup;
+use record::metric::Metric;
+use record::noise::Noise;
 use worker::handler::Prepared;
 
 /// Number of harmonic orders that a diagnosis compares.

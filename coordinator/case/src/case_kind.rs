@@ -6,9 +6,8 @@ use crate::{
     source::RecordFolder,
     summary::{self, CaseSummary},
 };
-use discrepancy::identify::LinearEstimate;
-use discrepancy::thresholds::Thresholds;
 use protocol::{case::Case, job::Numerics, wire::WireError};
+use record::Curves;
 
 /// Kind of model, as seen by the code that reads cases; every method but `name` has a default for a generic
 /// model.
@@ -57,12 +56,16 @@ pub trait ModelKind: Sync {
         None
     }
 
-    /// Returns the name and content of a file with the derivatives by the searched unknowns, in the format of other programs for
-    /// this kind of model; `None` if the kind has no such format.
+    /// Returns the name and content of a file with the derivatives of channels by `unknowns`, in the format of other
+    /// programs for this kind of model; `None` if the kind has no such format. `channels` holds the index of each channel
+    /// among those of the calibrated condition, `derivatives` their curves by each unknown: per decade on a logarithmic
+    /// scale, else per declared unit.
     fn jacobian_file(
         &self,
         _: &Case,
-        _derivatives: &LinearEstimate,
+        _unknowns: &[&str],
+        _channels: &[usize],
+        _derivatives: &[Curves],
     ) -> Option<(&'static str, Vec<u8>)> {
         None
     }
@@ -81,14 +84,16 @@ pub trait ModelKind: Sync {
 
     /// Returns the numerical settings (step sizes, discretisation) for the simulations of a diagnosis, and
     /// finer settings with which its discretisation error is checked: first everything refined, then each
-    /// refinement alone. The list of finer settings is empty where nothing can be refined.
+    /// refinement alone. The list of finer settings is empty where nothing can be refined. `step` is the longest
+    /// integration step as a share of the case's, `refinement` the size of a finer element as a share of the case's.
     ///
     /// # Errors
     /// Returns an error if the case has no settings of this kind.
     fn diagnosis_numerics(
         &self,
         _: &Case,
-        _: &Thresholds,
+        _step: f64,
+        _refinement: f64,
     ) -> Result<(Numerics, Vec<Numerics>), WireError> {
         Ok((Numerics::FROM_CASE, Vec::new()))
     }
@@ -98,7 +103,7 @@ pub trait ModelKind: Sync {
     ///
     /// # Errors
     /// As [`Self::diagnosis_numerics`].
-    fn finer_settings(&self, _: &Case, _: &Thresholds) -> Result<Vec<String>, WireError> {
+    fn finer_settings(&self, _: &Case, _refinement: f64) -> Result<Vec<String>, WireError> {
         Ok(Vec::new())
     }
 }

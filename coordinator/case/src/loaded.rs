@@ -4,8 +4,8 @@ use super::{
     effect::{CaseEffect, CaseParameter},
     note::Note,
 };
-use discrepancy::record::Record;
 use protocol::case::{Case, Unknown};
+use record::Record;
 use serde::Deserialize;
 
 /// Origin of a case's records.

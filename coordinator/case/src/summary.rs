@@ -1,7 +1,7 @@
 //! Summary that `horsehead case check` prints of a valid case.
 use super::{loaded::Loaded, note::Note};
-use discrepancy::record::{Record, Recorded};
 use protocol::case::{Case, WeightedCondition};
+use record::{Record, Recorded};
 use std::fmt::Write as _;
 
 /// Summary of a case.

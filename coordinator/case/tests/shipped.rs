@@ -1,7 +1,6 @@
 //! Tests that the shipped case loads and that its figures agree with its README.
 use case::pumping_unit::{self as unit, RecordFacts, mesh};
 use case::{self, CaseEffect, CaseParameter, GeneFile, Loaded, Overrides};
-use discrepancy::thresholds::Thresholds;
 use protocol::{
     case::{Case, ChannelRecord, Offset, Term},
     pumping_unit::{Coefficient, Machine, Sensor},
@@ -406,10 +405,7 @@ fn gene_files_carry_their_effects() {
 #[test]
 fn finer_settings_can_be_written_into_the_case() {
     let case = with(&[]);
-    let thresholds = Thresholds::default();
-    let lines = case::kind::of(&case)
-        .finer_settings(&case, &thresholds)
-        .unwrap();
+    let lines = case::kind::of(&case).finer_settings(&case, 0.5).unwrap();
     let mut text = fs::read_to_string(shipped().join("case.toml")).unwrap();
     for line in &lines {
         let (key, value) = line.split_once(" = ").unwrap();

@@ -2,11 +2,11 @@
 use crate::baseline::budget::cost_with_derivatives;
 use crate::laboratory::Stage;
 use crate::model::inactive_unknowns::InactiveUnknowns;
-use crate::record::measured::Record;
 use crate::thresholds::Thresholds;
 use protocol::announce::EffectDescriptor;
 use protocol::case::Unknown;
 use protocol::job::Numerics;
+use record::Record;
 use search::space::Space;
 
 /// Inputs of a diagnosis: case, records, candidate effects and thresholds.

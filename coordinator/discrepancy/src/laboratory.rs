@@ -1,6 +1,6 @@
 //! Interface to the simulation of batches of points.
-use crate::record::measured::{Curves, Record, Recorded};
 use protocol::job::{Observation, SimulateSpec, Verdict};
+use record::{Curves, Record, Recorded};
 use serde::{Deserialize, Serialize};
 
 /// Stage of a diagnosis, for progress reports, timing and budgets.

@@ -72,10 +72,6 @@ pub(crate) const MOST_NAMES: usize = 4;
 /// chance, and a machine has a dozen instruments.
 pub const WITHIN: f64 = 3.0;
 
-/// Largest factor by which noise variances from few cycles are widened: that of six degrees of freedom. With
-/// fewer the variance of Student's distribution is hardly meaningful or does not exist.
-pub(crate) const WIDEST: f64 = 1.5;
-
 /// Error that every model of a real machine has in every channel, as a share of the root mean square of the measured
 /// curve. Linearity and hysteresis of good measuring chains alone are 0.1 % (accuracy class 0.1).
 pub(crate) const MODEL_FLOOR: f64 = 1e-3;
@@ -105,10 +101,6 @@ pub(crate) const COLOURED: f64 = 0.01;
 /// Share of `chi^2` that one more step of a converged fit may still promise to remove. The tests remove a
 /// smaller remainder themselves, since they use the residual after that step.
 pub(crate) const MAX_PREDICTED_DECREASE: f64 = 0.1;
-
-/// Factor by which a variance stated in a data sheet may be off, either way: noise that is stated in one
-/// figure is rarely better known. A residual beyond that is no noise, or not the stated noise.
-pub(crate) const STATED: f64 = 2.0;
 
 /// Squared distance of two effects, over the dispersion, from which they are told apart: a likelihood ratio
 /// of 1 in 250 at even odds.

@@ -4,9 +4,9 @@ use discrepancy::{
     diagnose::Diagnosis,
     identify::{IdentificationResult, UnknownEstimate},
     laboratory::Stage,
-    record::Record,
 };
 use protocol::announce::EffectDescriptor;
+use record::Record;
 use search::strategy::{Best, DescentEnd, Finish};
 use serde::{Deserialize, Serialize};
 

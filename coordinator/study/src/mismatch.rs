@@ -6,8 +6,8 @@ use super::{
     evaluator::Evaluator,
     stop::Stop,
 };
-use discrepancy::record::{Record, Recorded, Stated};
 use protocol::{case::Case, job::Verdict};
+use record::{Record, Recorded, Stated};
 
 /// Minimum amount by which a record must correlate better with another curve than with its own channel. Each
 /// of 28 records of the shipped and the practice cases correlates by at least 0.97 with its own channel under

@@ -2,9 +2,9 @@
 use super::entry::{DiagnosisResult, Entry, IdentificationStudy};
 use super::evaluate::{Scored, scored};
 use super::orthogonal::{TestResult, TrialRun};
-use discrepancy::record::Record;
 use journal::{Answers, Damage, JournalError, event::Event};
 use protocol::wire;
+use record::Record;
 use std::{collections::BTreeMap, path::Path, time::Duration};
 
 /// Reason why the result of a run cannot be read from its journal.

@@ -35,7 +35,8 @@ fn main() -> anyhow::Result<()> {
     let loaded = case::load_with_notes(&cli.case, &Overrides::default())?;
     let case = loaded.case;
     let thresholds = Thresholds::default();
-    let (usual, finer) = case::kind::of(&case).diagnosis_numerics(&case, &thresholds)?;
+    let (usual, finer) =
+        case::kind::of(&case).diagnosis_numerics(&case, thresholds.step, thresholds.refinement)?;
     let numerics: Vec<_> = std::iter::once(usual).chain(finer).collect();
     let model = if cli.table.is_file() {
         read(&cli.table)?

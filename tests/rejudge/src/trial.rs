@@ -2,12 +2,12 @@
 use crate::linear::{LinearLaboratory, LinearModel};
 use anyhow::Context as _;
 use discrepancy::diagnose::{Diagnosis, Inputs, Limit, diagnose};
-use discrepancy::record::Record;
 use discrepancy::thresholds::Thresholds;
 use discrepancy::verdict::Verdict;
 use protocol::announce::{EffectDescriptor, Sign};
 use protocol::case::{Abscissa, Case, EffectSetting};
 use protocol::job::{Individual, Numerics, Reply, SimulateSpec};
+use record::Record;
 use search::random::{Phase, Stream, Streams};
 use search::space::Space;
 use std::f64::consts::TAU;

@@ -12,12 +12,12 @@ use crate::{
     loaded::Loaded,
     source::RecordFolder,
 };
-use discrepancy::identify::LinearEstimate;
 use protocol::{
     case::{Case, ModelSettings, Reproducibility},
     external::{External, KIND, entry_of, kind_of},
     wire,
 };
+use record::Curves;
 
 /// Maximum deadline that a case may state for one run of its program (s): a week.
 const LONGEST_S: f64 = 604_800.0;
@@ -82,9 +82,11 @@ impl ModelKind for CommandKind {
     fn jacobian_file(
         &self,
         case: &Case,
-        derivatives: &LinearEstimate,
+        unknowns: &[&str],
+        channels: &[usize],
+        derivatives: &[Curves],
     ) -> Option<(&'static str, Vec<u8>)> {
-        jacobian(case, derivatives)
+        jacobian(case, unknowns, channels, derivatives)
     }
 
     fn is_program(&self) -> bool {

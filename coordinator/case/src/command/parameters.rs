@@ -1,10 +1,10 @@
 //! Export of a case's unknowns as a PEST parameter file, and of the derivatives by them as a Jacobian matrix file.
-use discrepancy::identify::LinearEstimate;
 use exchange::pest::{self, ParRow};
 use protocol::{
     case::{Case, Unknown},
     external::{ChannelSource, External},
 };
+use record::Curves;
 
 /// Returns the text of a PEST parameter file with the given values of the unknowns.
 pub(super) fn parameters(case: &Case, genes: &[f64]) -> String {
@@ -29,15 +29,20 @@ pub(super) fn parameters(case: &Case, genes: &[f64]) -> String {
 /// Returns the name and content of PEST's Jacobian matrix file: derivatives of the measured observations by the estimated
 /// parameters, by the decimal logarithm of logarithmic ones. `None` if a channel is not a list of named values with an
 /// absolute zero, of which every value has an exact derivative.
-pub(super) fn jacobian(case: &Case, estimate: &LinearEstimate) -> Option<(&'static str, Vec<u8>)> {
+pub(super) fn jacobian(
+    case: &Case,
+    unknowns: &[&str],
+    channels: &[usize],
+    derivatives: &[Curves],
+) -> Option<(&'static str, Vec<u8>)> {
     let external = External::of(&case.model).ok()?;
-    let channels: Vec<usize> = case
+    let of_condition: Vec<usize> = case
         .channels_of(case.objective.condition)
         .map(|(at, _)| at)
         .collect();
     let mut observations = Vec::new();
-    for own in &estimate.channels {
-        let at = *channels.get(*own)?;
+    for own in channels {
+        let at = *of_condition.get(*own)?;
         let ChannelSource::Named(names) = external.curves.get(at)? else {
             return None;
         };
@@ -46,9 +51,8 @@ pub(super) fn jacobian(case: &Case, estimate: &LinearEstimate) -> Option<(&'stat
         }
         observations.extend(names.iter().cloned());
     }
-    let unknowns = estimate.unknowns.iter();
-    let parameters: Vec<String> = unknowns.map(|own| own.name.clone()).collect();
-    let columns: Vec<Vec<f64>> = estimate.derivatives.iter().map(|by| by.concat()).collect();
+    let parameters: Vec<String> = unknowns.iter().map(|name| (*name).to_owned()).collect();
+    let columns: Vec<Vec<f64>> = derivatives.iter().map(|by| by.concat()).collect();
     let is_whole = columns.iter().all(|by| by.len() == observations.len());
     is_whole.then(|| pest::jacobian(&parameters, &observations, &columns))
 }

@@ -14,8 +14,8 @@ use super::{
     file::{CaseFile, ConditionEntry, HeldOutEntry},
     objective, unknowns,
 };
-use discrepancy::record::{Curves, Record, Recorded, Stated};
 use protocol::case::{Case, Offset};
+use record::{Curves, Record, Recorded, Stated};
 use std::path::Path;
 
 /// Reads a case in the general form, for a model that the coordinator does not know.

@@ -11,7 +11,7 @@ use crate::{
     note::Note,
     source::RecordFolder,
 };
-use discrepancy::record::Record;
+use ::record::Record;
 use protocol::{
     case::{Channel, Condition},
     pumping_unit::{Smoothing, WorkingCondition},

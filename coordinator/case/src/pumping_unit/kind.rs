@@ -4,7 +4,6 @@ use crate::{
     case_kind::ModelKind, error::CaseError, loaded::Loaded, source::RecordFolder,
     summary::CaseSummary,
 };
-use discrepancy::thresholds::Thresholds;
 use protocol::{case::Case, job::Numerics, pumping_unit::Machine, wire::WireError};
 
 /// Kind of model for pumping units with double horse heads.
@@ -31,20 +30,17 @@ impl ModelKind for PumpingUnitKind {
         (format!("conditions[{condition}].record_file"), remedy)
     }
 
-    fn finer_settings(
-        &self,
-        case: &Case,
-        thresholds: &Thresholds,
-    ) -> Result<Vec<String>, WireError> {
-        super::numerics::finer_settings(case, thresholds)
+    fn finer_settings(&self, case: &Case, refinement: f64) -> Result<Vec<String>, WireError> {
+        super::numerics::finer_settings(case, refinement)
     }
 
     fn diagnosis_numerics(
         &self,
         case: &Case,
-        thresholds: &Thresholds,
+        step: f64,
+        refinement: f64,
     ) -> Result<(Numerics, Vec<Numerics>), WireError> {
-        numerics(case, thresholds)
+        numerics(case, step, refinement)
     }
 
     fn unknowns_key(&self) -> &'static str {

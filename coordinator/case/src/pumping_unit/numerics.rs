@@ -1,5 +1,4 @@
 //! Numerical settings (discretisation in space and time) of the simulations of a diagnosis.
-use discrepancy::thresholds::Thresholds;
 use protocol::{
     case::Case,
     job::Numerics,
@@ -15,19 +14,20 @@ use protocol::{
 /// Returns an error for a case of another kind.
 pub(super) fn numerics(
     case: &Case,
-    thresholds: &Thresholds,
+    step: f64,
+    refinement: f64,
 ) -> Result<(Numerics, Vec<Numerics>), WireError> {
     let machine = Machine::of(case)?;
     let available = machine.modal_head.frequencies_hz.len();
     let usual = Discretisation {
-        longest_step_s: Some(thresholds.step * machine.run.longest_step_s),
+        longest_step_s: Some(step * machine.run.longest_step_s),
         ..Discretisation::default()
     };
     let finest = Discretisation {
-        cylinder_length_m: Some(machine.ropes.cylinder_length_m * thresholds.refinement),
+        cylinder_length_m: Some(machine.ropes.cylinder_length_m * refinement),
         lead_in_deg: Some(machine.run.lead_in_deg + 180.0),
         modes: Some((machine.run.modes + 2).min(available)),
-        longest_step_s: Some(0.5 * thresholds.step * machine.run.longest_step_s),
+        longest_step_s: Some(0.5 * step * machine.run.longest_step_s),
         ..Discretisation::OF_THE_CASE
     };
     let cylinders = Discretisation {
@@ -50,18 +50,15 @@ pub(super) fn numerics(
 ///
 /// # Errors
 /// As [`numerics`].
-pub(super) fn finer_settings(
-    case: &Case,
-    thresholds: &Thresholds,
-) -> Result<Vec<String>, WireError> {
+pub(super) fn finer_settings(case: &Case, refinement: f64) -> Result<Vec<String>, WireError> {
     let machine = Machine::of(case)?;
     let (ropes, run) = (&machine.ropes, &machine.run);
     let available = machine.modal_head.frequencies_hz.len();
-    let count = |cylinders: usize| (cylinders as f64 / thresholds.refinement).round();
+    let count = |cylinders: usize| (cylinders as f64 / refinement).round();
     Ok(vec![
         format!(
             "ropes.cylinder_length_m = {}",
-            ropes.cylinder_length_m * thresholds.refinement
+            ropes.cylinder_length_m * refinement
         ),
         format!("ropes.back_cylinders = {}", count(ropes.back_cylinders)),
         format!("ropes.front_cylinders = {}", count(ropes.front_cylinders)),

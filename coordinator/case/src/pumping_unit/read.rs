@@ -15,11 +15,11 @@ use crate::{
     loaded::{Loaded, Records},
     source::RecordFolder,
 };
-use discrepancy::record::Record;
 use protocol::{
     case::{Case, Objective, Unknown},
     pumping_unit::{EFFECT_UNITS, Machine},
 };
+use record::Record;
 
 /// Reads a case with its machine.
 ///

@@ -1,11 +1,12 @@
 //! Baseline: the recalibrated model without further effects, in the metric of all tests.
 use crate::baseline::discretisation_check::Preflight;
 use crate::linear::score::misfit_tail;
+use crate::linear::whitened::WhitenedRecord;
 use crate::model::fit::Fit;
-use crate::record::metric::Metric;
-use crate::record::noise::NoiseSource;
-use crate::record::whitened::WhitenedRecord;
-use crate::thresholds::{STATED, WITHIN};
+use crate::thresholds::WITHIN;
+use record::metric::Metric;
+use record::noise::NoiseSource;
+use record::noise::STATED;
 
 /// Baseline of all hypothesis tests: the recalibrated model without further effects.
 pub(crate) struct Baseline {
@@ -93,9 +94,9 @@ fn is_noise(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::record::basis::ChannelGroup;
-    use crate::record::measured::{Record, Stated, tests::recorded};
-    use crate::record::noise::Noise;
+    use record::basis::ChannelGroup;
+    use record::noise::Noise;
+    use record::{Record, Stated, recorded};
     use search::random::{Phase, Streams};
 
     /// Counts the records of white noise, of 120 orders each, whose residual under the true model is called

@@ -5,14 +5,14 @@
 //! part of the noise (an adequacy floor), so that no effect is named for an error of the coarser
 //! discretisation.
 use crate::laboratory::{Laboratory, curves};
+use crate::linear::whitened::WhitenedRecord;
 use crate::model::experiments::Experiments;
 use crate::model::fit::Fit;
-use crate::record::measured::{Curves, difference};
-use crate::record::metric::Metric;
-use crate::record::spectrum::Spectra;
-use crate::record::whitened::WhitenedRecord;
 use nalgebra::DVector;
 use protocol::job::Numerics;
+use record::metric::Metric;
+use record::spectrum::Spectra;
+use record::{Curves, difference};
 use serde::{Deserialize, Serialize};
 
 /// Difference between the curves of a model and those of a finer discretisation of it.

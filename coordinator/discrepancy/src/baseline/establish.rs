@@ -5,18 +5,18 @@ use crate::baseline::input_error::input_errors;
 use crate::baseline::{discretisation_check, global_start, narrow_minimum, recalibrate};
 use crate::inputs::Inputs;
 use crate::laboratory::{Laboratory, Stage};
+use crate::linear::whitened::WhitenedRecord;
 use crate::model::experiments::Experiments;
 use crate::model::fit::Fit;
 use crate::model::inactive_unknowns::InactiveUnknowns;
 use crate::model::nuisance_parameter::NuisanceParameter;
 use crate::model::unknowns::{FittedModel, Point};
-use crate::record::basis::ChannelGroup;
-use crate::record::measured::{Curves, Record};
-use crate::record::metric::Metric;
-use crate::record::noise::Noise;
-use crate::record::whitened::WhitenedRecord;
 use crate::thresholds::BEYOND;
 use nalgebra::DVector;
+use record::basis::ChannelGroup;
+use record::metric::Metric;
+use record::noise::Noise;
+use record::{Curves, Record};
 
 /// Reason why no baseline could be constructed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -3,9 +3,9 @@ use crate::laboratory::Laboratory;
 use crate::model::experiments::Experiments;
 use crate::model::fit::Fit;
 use crate::model::parameter::{at_typical, sizes};
-use crate::record::input_scatter::InputScatter;
-use crate::record::measured::{Curves, difference};
 use protocol::announce::EffectDescriptor;
+use record::InputScatter;
+use record::{Curves, difference};
 
 /// Deviation of the curves caused by the scatter of an input between cycles.
 pub(crate) struct InputError {

@@ -5,8 +5,8 @@ use crate::baseline::session::Session;
 use crate::laboratory::{Laboratory, Stage};
 use crate::linear::tangent::Tangent;
 use crate::model::fit::Fit;
-use crate::record::metric::Metric;
 use nalgebra::{DMatrix, DVector};
+use record::metric::Metric;
 use search::least_squares::{Linearized, Variable};
 
 /// Comparison of a model about to be accepted with a finer discretisation of it.

@@ -10,8 +10,8 @@ use crate::hypothesis::joint_refit::{JointRefit, joint_refits};
 use crate::hypothesis::round::WorkingRound;
 use crate::laboratory::{Laboratory, Stage};
 use crate::model::fit::Fit;
-use crate::record::metric::Metric;
 use crate::thresholds::Thresholds;
+use record::metric::Metric;
 
 /// Result of a round whose effects were accepted.
 pub(crate) struct Accepted {

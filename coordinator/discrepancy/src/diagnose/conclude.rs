@@ -23,10 +23,10 @@ use crate::laboratory::{Laboratory, Stage};
 use crate::localisation::parameter_drift::refit::drifts;
 use crate::localisation::summary;
 use crate::model::fit::Fit;
-use crate::record::metric::Metric;
-use crate::record::noise::NoiseSource;
 use crate::validation::compare::ValidationRecord;
 use crate::verdict::{Findings, TestValidity, verdict};
+use record::metric::Metric;
+use record::noise::NoiseSource;
 use std::mem;
 
 /// Computes estimates, validation and verdict of a diagnosis; `shown` are the records used for the

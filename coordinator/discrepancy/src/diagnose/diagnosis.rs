@@ -14,11 +14,11 @@ use crate::laboratory::Stage;
 use crate::localisation::parameter_drift::shifts::ParameterDrift;
 use crate::localisation::summary::Localisation;
 use crate::model::fit::{Fit, FitSummary};
-use crate::record::noise::NoiseSource;
 use crate::validation::compare::GapRow;
 use crate::validation::predictive::Prediction;
 use crate::verdict::Verdict;
 use nalgebra::DMatrix;
+use record::noise::NoiseSource;
 use serde::{Deserialize, Serialize};
 
 /// Diagnosis with its fits and signatures, as its own steps need it.

@@ -16,10 +16,10 @@ use crate::hypothesis::signature::examine;
 use crate::hypothesis::valley_search;
 use crate::laboratory::{Finding, Laboratory, Stage, Suspect};
 use crate::model::fit::Fit;
-use crate::record::measured::Record;
 use crate::validation::compare::ValidationRecord;
 use crate::validation::gap_closure::gap;
 use protocol::announce::EffectDescriptor;
+use record::Record;
 
 /// Number of rounds of a diagnosis in which the narrow minimum of the misfit is searched.
 const LOOKS: usize = 2;

@@ -1,10 +1,10 @@
 //! Smooth discrepancy that a fit needs, as curves: what is missing beside the model, in the unit of each channel.
+use crate::linear::whitened::WhitenedRecord;
 use crate::model::fit::Fit;
-use crate::record::measured::Curves;
-use crate::record::whitened::WhitenedRecord;
 use crate::validation::gap_closure::gap;
 use nalgebra::{DMatrix, DVector};
 use protocol::case::Channel;
+use record::Curves;
 use serde::{Deserialize, Serialize};
 
 /// Half-width of a 95 % interval in standard deviations.

@@ -3,7 +3,7 @@ use crate::estimate::spread::Spread;
 use crate::hypothesis::round::WorkingRound;
 use crate::linear::score::family_wise;
 use crate::model::fit::Fit;
-use crate::record::metric::Metric;
+use record::metric::Metric;
 use serde::{Deserialize, Serialize};
 
 /// Estimate of one effect that the diagnosis added to the model, or that the record cannot distinguish from it.

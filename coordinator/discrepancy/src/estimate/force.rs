@@ -4,8 +4,8 @@ use crate::estimate::spread::Spread;
 use crate::hypothesis::generic_force::Challenger;
 use crate::model::fit::{Fit, FitSummary};
 use crate::model::probe;
-use crate::record::metric::Metric;
 use crate::validation::compare::GapRow;
+use record::metric::Metric;
 use serde::{Deserialize, Serialize};
 
 /// Generic force with its estimated amplitude and the misfit that it removes.

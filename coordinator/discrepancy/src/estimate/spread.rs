@@ -11,16 +11,16 @@
 //! autocovariance needs no estimate). Beside a smooth discrepancy of covariance `C = I + D D^T` the middle factor is
 //! `J^T C J`, and the dispersion 1. No variance falls below the one for white residuals. An unknown on a
 //! bound counts as known for all others, and has the variance that it would have if it alone were free.
-use crate::linear::score::student;
 use crate::linear::tangent::free;
 use crate::localisation::residual::Residual;
 use crate::localisation::{order, whiteness};
 use crate::model::fit::Fit;
-use crate::record::metric::Metric;
-use crate::record::noise::NoiseSource;
-use crate::record::spectrum::Spectra;
 use crate::thresholds::COLOURED;
 use nalgebra::{Complex, DMatrix, DVector};
+use record::metric::Metric;
+use record::noise::NoiseSource;
+use record::noise::student;
+use record::spectrum::Spectra;
 
 /// Uncertainty of the unknowns of a fit.
 #[derive(Clone, Debug)]

@@ -7,10 +7,10 @@
 //! effects start from that fit with their estimated sizes.
 use crate::hypothesis::{candidate, refit, signature};
 use crate::laboratory::{Laboratory, Stage};
+use crate::linear::whitened::WhitenedRecord;
 use crate::model::experiments::Experiments;
 use crate::model::fit::{Fit, closest};
 use crate::model::unknowns::Point;
-use crate::record::whitened::WhitenedRecord;
 use protocol::announce::EffectDescriptor;
 use search::least_squares::LeastSquaresSettings;
 

@@ -1,8 +1,8 @@
 //! Traces: effects that change no channel by more than models of real machines err anyway.
 use crate::baseline::base::Baseline;
 use crate::model::fit::Fit;
-use crate::record::measured::{Record, Recorded, power};
 use crate::thresholds::{LAW_FLOOR, MODEL_FLOOR};
+use record::{Record, Recorded, power};
 
 /// Largest change of a channel by an effect.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,7 +1,7 @@
 //! Results of an identifiability analysis, as data.
 use crate::estimate::nuisances::NuisanceEstimate;
-use crate::record::measured::Curves;
-use crate::record::noise::NoiseSource;
+use record::Curves;
+use record::noise::NoiseSource;
 use serde::{Deserialize, Serialize};
 
 /// Identifiability of a model's unknowns from a record.

@@ -9,9 +9,9 @@ use super::profiles::Profiles;
 use crate::laboratory::{Laboratory, channels};
 use crate::model::experiments::Experiments;
 use crate::model::fit::Fit;
-use crate::record::measured::{Curves, Record, Recorded, Stated};
 use nalgebra::{DMatrix, DVector};
 use protocol::case::Channel;
+use record::{Curves, Record, Recorded, Stated};
 
 /// Maximum rise of the cost at a profile point that counts as compatible with the record, as a multiple of
 /// the rise at the end of an interval.

@@ -8,11 +8,11 @@ use super::settings::FREE;
 use crate::estimate::spread::Spread;
 use crate::inputs::Inputs;
 use crate::laboratory::{Laboratory, Stage};
+use crate::linear::whitened::WhitenedRecord;
 use crate::model::experiments::Experiments;
 use crate::model::unknowns::{DefaultPrior, FittedModel, Point};
-use crate::record::measured::Curves;
-use crate::record::whitened::WhitenedRecord;
 use protocol::case::Scale;
+use record::Curves;
 use search::least_squares::LeastSquaresSettings;
 
 /// Linear estimate of the searched unknowns at given parameters.

@@ -7,10 +7,10 @@ use super::band::covariance;
 use super::profiles::Profiles;
 use crate::inputs::Inputs;
 use crate::linear::stack::stacked;
-use crate::record::measured::{Curves, Record, Recorded};
-use crate::record::whitened::WhitenedRecord;
+use crate::linear::whitened::WhitenedRecord;
 use nalgebra::DMatrix;
 use protocol::case::Channel;
+use record::{Curves, Record, Recorded};
 
 /// Factor on the number of cycles in the hypothetical measurement with more cycles.
 const CYCLES: f64 = 4.0;

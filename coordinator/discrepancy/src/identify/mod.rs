@@ -30,9 +30,9 @@ use crate::laboratory::{Laboratory, Stage};
 use crate::model::experiments::Experiments;
 use crate::model::fit::Fit;
 use crate::model::unknowns::DefaultPrior;
-use crate::record::noise::NoiseSource;
 use crate::thresholds::NOISE_RATIO_LIMIT;
 use protocol::case::Channel;
+use record::noise::NoiseSource;
 use settings::FREE;
 
 /// Growth of intervals by colour of the residual from which it counts as structure: of 200 white residuals of a straight

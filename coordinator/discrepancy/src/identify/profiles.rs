@@ -12,8 +12,8 @@ use crate::laboratory::Laboratory;
 use crate::model::experiments::Experiments;
 use crate::model::fit::Fit;
 use crate::model::unknowns::Point;
-use crate::record::metric::Metric;
 use nalgebra::DMatrix;
+use record::metric::Metric;
 use search::least_squares::LeastSquaresSettings;
 
 /// Minimum amount by which a profile point must lie below the fit to count as a better fit, as a share of the

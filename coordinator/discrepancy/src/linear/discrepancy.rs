@@ -20,7 +20,7 @@ use search::least_squares::{Linearized, Variable};
 use std::f64::consts::TAU;
 
 /// Lengths that are compared, as shares of the abscissa's span, and between which they are refined: one sixth leaves
-/// waves of one and two cycles, one fiftieth all twelve that [`waves`](crate::record::waves) has.
+/// waves of one and two cycles, one fiftieth all twelve that [`waves`](crate::linear::waves) has.
 const LENGTHS: [f64; 4] = [1.0 / 6.0, 1.0 / 12.0, 1.0 / 25.0, 1.0 / 50.0];
 /// Smallest standard deviation of a discrepancy that is compared, in standard errors of the record's mean:
 /// less shows in no record.

@@ -8,3 +8,5 @@ pub mod score;
 pub(crate) mod stack;
 pub(crate) mod subset;
 pub mod tangent;
+pub(crate) mod waves;
+pub mod whitened;

@@ -7,9 +7,9 @@ use crate::model::fit::Fit;
 use crate::model::parameter::{absent, at_typical, sizes};
 use crate::model::probe;
 use crate::model::unknowns::Point;
-use crate::record::measured::Curves;
 use nalgebra::{DMatrix, DVector};
 use protocol::announce::EffectDescriptor;
+use record::Curves;
 use std::collections::BTreeMap;
 
 /// Highest harmonic of the probe forces.

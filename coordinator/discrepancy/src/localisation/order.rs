@@ -4,9 +4,9 @@
 //! Benjamini and Hochberg keeps the share of false entries below a set level.
 use crate::linear::tangent::Tangent;
 use crate::localisation::residual::Residual;
-use crate::record::metric::Metric;
-use crate::record::spectrum::Spectra;
 use nalgebra::{Complex, DVector};
+use record::metric::Metric;
+use record::spectrum::Spectra;
 use search::random::{Phase, Streams};
 use serde::{Deserialize, Serialize};
 use statrs::distribution::{ContinuousCDF as _, FisherSnedecor};

@@ -1,7 +1,7 @@
 //! Whitened residual of a fit, with what is needed to predict its distribution under noise.
 use crate::linear::tangent::Tangent;
-use crate::record::metric::Metric;
 use nalgebra::DVector;
+use record::metric::Metric;
 
 /// Whitened residual of a fit to a record.
 #[derive(Clone, Copy, Debug)]

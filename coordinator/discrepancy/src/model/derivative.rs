@@ -6,9 +6,9 @@
 use crate::model::nuisance_parameter::{NuisanceParameter, apply_gains, effects};
 use crate::model::parameter::setting;
 use crate::model::unknowns::{FittedModel, Point};
-use crate::record::measured::{Curves, Record};
 use protocol::announce::EffectDescriptor;
 use protocol::job::{Column, Derivative};
+use record::{Curves, Record};
 use search::derivative::DerivativeTerm;
 
 /// Returns the chain-rule terms (derivative column and rate) of the curves' derivative by the `k`-th unknown
@@ -196,9 +196,9 @@ impl DerivativeRequest {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::record::measured::{Stated, tests::recorded};
     use protocol::case::{Scale, Tie, Unknown};
     use protocol::job::Per;
+    use record::{Stated, recorded};
     use search::space::Space;
 
     /// Checks, for two tied unknowns and a single one, that columns are consumed in the order of the terms

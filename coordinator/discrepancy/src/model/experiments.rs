@@ -1,11 +1,11 @@
 //! Simulations for one record: curves of points and their derivatives, and fits of models to the record.
 use crate::laboratory::{Laboratory, Stage, channels};
+use crate::linear::whitened::WhitenedRecord;
 use crate::model::derivative::DerivativeRequest;
 use crate::model::fit::Fit;
 use crate::model::unknowns::{FittedModel, Point};
-use crate::record::measured::{Curves, Record, Recorded, difference};
-use crate::record::whitened::WhitenedRecord;
 use protocol::job::{Column, Derivative, Observation, SimulateSpec};
+use record::{Curves, Record, Recorded, difference};
 use search::derivative::DerivativeTerm;
 use search::least_squares::{
     EvaluatedPoint, LeastSquares, LeastSquaresSettings, Termination, Variable,

@@ -4,9 +4,9 @@
 //! An added effect replaces the nuisance parameter that stands for it; its size is then the whole size of the
 //! effect.
 use crate::model::parameter::absent;
-use crate::record::measured::{Curves, Record};
-use crate::record::nuisance::{Acts, Nuisance};
 use protocol::announce::EffectDescriptor;
+use record::{Acts, Nuisance};
+use record::{Curves, Record};
 use search::least_squares::{Prior, Variable};
 
 /// Bound of a nuisance parameter: largest distance from its absent value (prior standard deviations).

@@ -7,11 +7,11 @@
 use crate::model::inactive_unknowns::InactiveUnknowns;
 use crate::model::nuisance_parameter::{NuisanceParameter, apply_gains, effects};
 use crate::model::parameter::{setting, variable};
-use crate::record::measured::{Curves, Record};
 use crate::thresholds::WITHIN;
 use protocol::announce::EffectDescriptor;
 use protocol::case::EffectSetting;
 use protocol::job::{Individual, Numerics, Reply, SimulateSpec};
+use record::{Curves, Record};
 use search::least_squares::{Prior, Variable};
 use search::space::Space;
 

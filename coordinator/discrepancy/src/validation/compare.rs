@@ -5,18 +5,18 @@ use crate::baseline::input_error::{InputError, input_errors};
 use crate::baseline::session::Session;
 use crate::laboratory::{Laboratory, Stage, channels};
 use crate::linear::discrepancy::{Discrepancy, SmoothBasis};
+use crate::linear::waves::smooth_basis;
+use crate::linear::whitened::WhitenedRecord;
 use crate::model::experiments::Experiments;
 use crate::model::fit::Fit;
-use crate::record::basis::ChannelGroup;
-use crate::record::measured::{Curves, Record, Split};
-use crate::record::metric::Metric;
-use crate::record::noise::Noise;
-use crate::record::nuisance::{Acts, Nuisance};
-use crate::record::waves::smooth_basis;
-use crate::record::whitened::WhitenedRecord;
 use crate::validation::gap_closure::{Closed, gap_closure};
 use crate::validation::scoring_metric::ScoringMetric;
 use nalgebra::DMatrix;
+use record::basis::ChannelGroup;
+use record::metric::Metric;
+use record::noise::Noise;
+use record::{Acts, Nuisance};
+use record::{Curves, Record, Split};
 use serde::{Deserialize, Serialize};
 
 /// Gap between record and model on one record, before and after the answer's effects are added.

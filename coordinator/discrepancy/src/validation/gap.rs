@@ -5,9 +5,9 @@
 //! simulated curve `s`, both without their means: `gap = (mean (y - s)^2 - mean se^2) / mean y^2`. A gap of 0
 //! means that nothing is left to explain. Shares of sectors and orders are those of the squared residual;
 //! they locate the disagreement and do not name its cause.
-use crate::record::measured::power;
-use crate::record::spectrum::Orders;
 use protocol::case::ChannelRecord;
+use record::power;
+use record::spectrum::Orders;
 use std::ops::RangeInclusive;
 
 /// Number of equal sectors of an abscissa over which a gap is distributed.

@@ -6,7 +6,7 @@
 //! resample before and after; the cycles are the record's own, or those of a record that holds more of the
 //! same kind. A gap that closes does not prove an effect: a wrong effect often closes most of it, which is
 //! why the best rejected rival is always shown beside it.
-use crate::record::measured::{Curves, Record, mean_of, power, scatter};
+use record::{Curves, Record, mean_of, power, scatter};
 use search::random::{Phase, Stream, Streams};
 use serde::{Deserialize, Serialize};
 
@@ -164,7 +164,7 @@ impl GapReference {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::record::measured::{Stated, tests::recorded};
+    use record::{Stated, recorded};
 
     fn wave(amplitude: f64, phase: f64) -> Vec<f64> {
         (0..720)

@@ -30,13 +30,14 @@ use crate::linear::tangent::free;
 use crate::model::experiments::Experiments;
 use crate::model::fit::Fit;
 use crate::model::parameter::sizes;
-use crate::record::measured::Record;
-use crate::record::metric::Metric;
-use crate::record::noise::NoiseSource;
-use crate::thresholds::{STATED, Thresholds};
+use crate::thresholds::Thresholds;
 use crate::validation::compare::{DataRole, ValidationRecord};
 use crate::validation::scoring_metric::divide_by_student_deviation;
 use nalgebra::{DMatrix, DVector};
+use record::Record;
+use record::metric::Metric;
+use record::noise::NoiseSource;
+use record::noise::STATED;
 use search::least_squares::{Linearized, Variable};
 use serde::{Deserialize, Serialize};
 

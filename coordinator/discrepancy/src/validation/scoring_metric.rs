@@ -5,10 +5,10 @@
 //! every residual. A variance estimated from few cycles is less certain than it seems: entries are divided by
 //! `sqrt(nu / (nu - 2))`, the standard deviation of Student's distribution with `nu` degrees of freedom, at
 //! most `sqrt(1.5)`.
-use crate::record::measured::{Curves, Record};
-use crate::record::metric::Metric;
-use crate::record::noise::NoiseSource;
 use nalgebra::{DMatrix, DVector};
+use record::metric::Metric;
+use record::noise::NoiseSource;
+use record::{Curves, Record};
 
 /// Whitened mean of a record, with the weights that express residuals in units of the record's own
 /// uncertainty, for scoring an answer.

@@ -1,7 +1,7 @@
 //! Laboratory for tests that evaluates a model function immediately.
 use discrepancy::laboratory::{Laboratory, Stage};
-use discrepancy::record::Curves;
 use protocol::job::{Counters, Observation, SimulateSpec, Verdict};
+use record::Curves;
 use std::convert::Infallible;
 
 /// Laboratory defined by a function from a job to its curves; `None` where the job fails.

@@ -5,12 +5,12 @@ use discrepancy::linear::score::misfit_tail;
 use discrepancy::linear::tangent::Tangent;
 use discrepancy::localisation::residual::Residual;
 use discrepancy::localisation::{order, whiteness, window_test};
-use discrepancy::record::basis::ChannelGroup;
-use discrepancy::record::metric::Metric;
-use discrepancy::record::noise::{Noise, NoiseSource};
-use discrepancy::record::{Curves, Record, Recorded, Stated};
 use nalgebra::{DMatrix, DVector};
 use protocol::case::{Abscissa, Channel, Offset};
+use record::basis::ChannelGroup;
+use record::metric::Metric;
+use record::noise::{Noise, NoiseSource};
+use record::{Curves, Record, Recorded, Stated};
 use search::least_squares::Linearized;
 use search::random::{Phase, Stream, Streams};
 

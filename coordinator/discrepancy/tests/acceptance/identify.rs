@@ -6,13 +6,13 @@ use discrepancy::diagnose::Inputs;
 use discrepancy::identify::{
     Determination, IdentificationResult, IntervalEnd, UnknownEstimate, identify,
 };
-use discrepancy::linear::score::student;
-use discrepancy::record::whitened::WhitenedRecord;
-use discrepancy::record::{Curves, Record, Recorded, Stated};
+use discrepancy::linear::whitened::WhitenedRecord;
 use discrepancy::thresholds::Thresholds;
 use nalgebra::{DMatrix, DVector};
 use protocol::case::{Abscissa, Channel, Offset, Scale, Unknown};
 use protocol::job::{Numerics, SimulateSpec};
+use record::noise::student;
+use record::{Curves, Record, Recorded, Stated};
 use search::random::{Phase, Streams};
 use search::space::Space;
 

@@ -12,12 +12,12 @@ use discrepancy::localisation::residual::Residual;
 use discrepancy::localisation::summary::Localisation;
 use discrepancy::localisation::{joint, order, window_test};
 use discrepancy::model::{FittedModel, Point, probe};
-use discrepancy::record::basis::ChannelGroup;
-use discrepancy::record::metric::Metric;
-use discrepancy::record::noise::Noise;
-use discrepancy::record::{Curves, Record, mean_of};
 use nalgebra::{DMatrix, DVector};
 use protocol::job::Numerics;
+use record::basis::ChannelGroup;
+use record::metric::Metric;
+use record::noise::Noise;
+use record::{Curves, Record, mean_of};
 use search::least_squares::{Linearized, Variable};
 
 fn simulate(point: &Point) -> Curves {

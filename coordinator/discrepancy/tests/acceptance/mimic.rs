@@ -4,12 +4,12 @@ use crate::by_curves::ByCurves;
 use crate::case::{effect, size};
 use crate::trial::{line, now};
 use discrepancy::diagnose::{Diagnosis, Inputs, diagnose};
-use discrepancy::record::{Curves, Record, Recorded, Stated};
 use discrepancy::thresholds::Thresholds;
 use discrepancy::verdict::Verdict;
 use protocol::announce::{Place, Sign};
 use protocol::case::{Abscissa, Channel, Offset, Scale, Unknown};
 use protocol::job::{Numerics, SimulateSpec};
+use record::{Curves, Record, Recorded, Stated};
 use search::random::{Phase, Streams};
 use search::space::Space;
 

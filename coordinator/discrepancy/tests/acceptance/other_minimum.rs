@@ -4,9 +4,9 @@ use crate::by_curves::ByCurves;
 use crate::mimic::{SAMPLES, inputs, simulated};
 use crate::trial::{line, now};
 use discrepancy::diagnose::{Diagnosis, diagnose};
-use discrepancy::record::{Acts, Nuisance};
 use discrepancy::verdict::Verdict;
 use protocol::case::{Scale, Unknown};
+use record::{Acts, Nuisance};
 use search::space::Space;
 use std::f64::consts::TAU;
 

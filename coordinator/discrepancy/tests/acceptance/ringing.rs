@@ -5,13 +5,13 @@ use crate::by_sample::{SAMPLES, SIZES, record, times};
 use crate::case::{effect, size};
 use crate::trial::{diagnoses, now, say};
 use discrepancy::diagnose::{Diagnosis, Inputs, diagnose};
-use discrepancy::record::{Acts, Curves, Nuisance, Record};
 use discrepancy::thresholds::Thresholds;
 use discrepancy::validation::compare::DataRole;
 use discrepancy::verdict::Verdict;
 use protocol::announce::{EffectDescriptor, Place, Sign};
 use protocol::case::{Offset, Scale, Unknown};
 use protocol::job::{Individual, Numerics, SimulateSpec};
+use record::{Acts, Curves, Nuisance, Record};
 use search::random::{Phase, Streams};
 use search::space::Space;
 

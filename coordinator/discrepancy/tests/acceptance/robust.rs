@@ -6,9 +6,9 @@ use crate::truth::{ALL, Truth};
 use discrepancy::diagnose::{Diagnosis, Round};
 use discrepancy::laboratory::Stage;
 use discrepancy::model::FitSummary;
-use discrepancy::record::noise::NoiseSource;
 use discrepancy::validation::compare::DataRole;
 use discrepancy::verdict::Verdict;
+use record::noise::NoiseSource;
 
 /// Returns true machines for the robustness tests: healthy ones, and ones with one planted effect.
 fn sample() -> Vec<Truth> {

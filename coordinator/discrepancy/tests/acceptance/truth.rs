@@ -1,8 +1,8 @@
 //! Simulation of the true machine by time stepping, with laws other than the tool's, and of the sensors that
 //! read it. Shares the data sheet with the tool's machine and not one line of code.
 use crate::case::{RECOMMENDED, SAMPLES, SPEED, card};
-use discrepancy::record::{Curves, InputScatter, Record, Recorded, Stated};
 use protocol::case::{Abscissa, Channel, Offset};
+use record::{Curves, InputScatter, Record, Recorded, Stated};
 use search::random::{Phase, Stream, Streams};
 use std::f64::consts::TAU;
 

@@ -4,7 +4,7 @@ use super::subject::DiagnosisInput;
 use crate::chart::{ChartAxis, GapComparison};
 use crate::kind;
 use crate::words::condition_name;
-use discrepancy::record::{Curves, Record};
+use record::{Curves, Record};
 
 /// Measured and simulated curves of one condition, on the grid of its record.
 #[derive(Clone, Debug)]

@@ -2,9 +2,9 @@
 use crate::data::Origin;
 use discrepancy::diagnose::{Diagnosis, Estimate};
 use discrepancy::laboratory::Stage;
-use discrepancy::record::Record;
 use protocol::announce::{EffectDescriptor, ParameterDescriptor};
 use protocol::case::Case;
+use record::Record;
 use std::time::Duration;
 use study::RecordedDiagnosis;
 

@@ -3,7 +3,7 @@ use super::subject::IdentificationInput;
 use crate::number::fixed;
 use crate::words::{join_words, no_intervals};
 use discrepancy::identify::{Determination, IntervalEnd, UnknownEstimate};
-use discrepancy::record::noise::NoiseSource;
+use record::noise::NoiseSource;
 
 /// Returns the summary sentence: number of unknowns determined, and names of those that are not; the remedy
 /// where the fit leaves a multiple of the noise.

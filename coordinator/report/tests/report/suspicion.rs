@@ -13,8 +13,6 @@ use discrepancy::localisation::parameter_drift::{ParameterDrift, ParameterShift,
 use discrepancy::localisation::summary::Localisation;
 use discrepancy::localisation::{joint, order, window_test};
 use discrepancy::model::{Fit, FitSummary, FittedModel};
-use discrepancy::record::noise::NoiseSource;
-use discrepancy::record::{Curves, Record, Recorded, Stated};
 use discrepancy::validation::compare::{DataRole, GapRow};
 use discrepancy::validation::gap_closure::gap_closure;
 use discrepancy::validation::predictive::Prediction;
@@ -23,6 +21,8 @@ use nalgebra::DVector;
 use protocol::announce::{EffectDescriptor, ParameterDescriptor, Place, Role, Sign};
 use protocol::case::Case;
 use protocol::pumping_unit::Sensor;
+use record::noise::NoiseSource;
+use record::{Curves, Record, Recorded, Stated};
 use report::Origin;
 use report::diagnosis::DiagnosisInput;
 use search::least_squares::{LeastSquares, LeastSquaresSettings};

@@ -2,8 +2,8 @@
 use crate::cli::{output::terminal, run::manifest::Start};
 use case::{Overrides, load_with_notes};
 use clap::Args;
-use discrepancy::record::Record;
 use protocol::case::Case;
+use record::Record;
 use std::{
     convert::Infallible,
     path::{Path, PathBuf},

@@ -222,8 +222,12 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         let seen = identifiability(bus, &run, &best, &mut Silent, stop).await?;
         let estimates = seen.as_ref().map(|seen| seen.unknowns.clone());
         bus.enter(&Entry::Estimated(estimates.unwrap_or_default()))?;
-        let kind = case::kind::of(&run.case);
-        if let Some((name, bytes)) = seen.and_then(|seen| kind.jacobian_file(&run.case, &seen)) {
+        let file = seen.and_then(|seen| {
+            let unknowns: Vec<&str> = seen.unknowns.iter().map(|own| own.name.as_str()).collect();
+            let kind = case::kind::of(&run.case);
+            kind.jacobian_file(&run.case, &unknowns, &seen.channels, &seen.derivatives)
+        });
+        if let Some((name, bytes)) = file {
             run.folder.write(name, &bytes)?;
         }
         Ok(())

@@ -91,7 +91,8 @@ pub(crate) async fn diagnose<E: Evaluator>(
         .as_ref()
         .or(result.preflight.as_ref());
     if check.is_some_and(Preflight::is_rough) {
-        let finer = case::kind::of(&loaded.case).finer_settings(&loaded.case, &own.thresholds)?;
+        let finer =
+            case::kind::of(&loaded.case).finer_settings(&loaded.case, own.thresholds.refinement)?;
         if !finer.is_empty() {
             let lines: Vec<String> = finer.iter().map(|line| format!("`{line}`")).collect();
             diagnosed.notes.push(format!(
@@ -146,7 +147,8 @@ pub(super) fn inputs<S>(
         .into_iter()
         .filter(|effect| case.effects.iter().all(|own| own.id != effect.id))
         .collect();
-    let (usual, finer) = case::kind::of(case).diagnosis_numerics(case, thresholds)?;
+    let (usual, finer) =
+        case::kind::of(case).diagnosis_numerics(case, thresholds.step, thresholds.refinement)?;
     Ok(Inputs {
         conditions: case.conditions.iter().map(|own| own.name.clone()).collect(),
         unknowns: case.unknowns.clone(),

@@ -30,7 +30,7 @@ use crate::{
     note::Note,
     source::{self, Overrides},
 };
-use discrepancy::record::Record;
+use ::record::Record;
 use protocol::{
     case::Channel,
     pumping_unit::{Machine, Sensor},

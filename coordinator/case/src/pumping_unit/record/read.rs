@@ -11,9 +11,9 @@ use crate::{
     file,
     note::Note,
 };
-use discrepancy::record::{Record, Recorded};
 use protocol::case::{Channel, ChannelRecord};
 use protocol::pumping_unit::Sensor;
+use record::{Record, Recorded};
 use std::path::{Path, PathBuf};
 
 /// Reads the samples of a record alone, without data sheet and case; returns their number. `path` is used

@@ -10,8 +10,8 @@
 //! cycles replace it.
 use super::samples::Samples;
 use crate::spread::mean_and_spread;
-use discrepancy::record::Curves;
 use protocol::pumping_unit::Sensor;
+use record::Curves;
 
 /// Cycles resampled on the output grid, with their mean and spread.
 #[derive(Debug)]

@@ -6,8 +6,8 @@ use crate::{
     error::CaseError,
     note::Note,
 };
-use discrepancy::record::{InputScatter, Stated};
 use protocol::pumping_unit::{Sensor, TurnSense};
+use record::{InputScatter, Stated};
 use serde::Deserialize;
 
 /// Keys of a data sheet that are read; other keys are allowed and produce a note.

@@ -1,7 +1,7 @@
 //! Tolerances of the instruments of a test, as stated in its data sheet, and the model parameter that
 //! represents each instrument's error: that of a library effect or the gain of a channel.
-use discrepancy::record::{Acts, Nuisance};
 use protocol::pumping_unit::Sensor;
+use record::{Acts, Nuisance};
 use serde::Deserialize;
 
 /// Standard deviation of each instrument's error, which is constant over a test; `None` where the sheet

@@ -1,6 +1,6 @@
 //! Record linearised about a fitted point, with the scatter of its cycles.
-use crate::record::measured::{Curves, Record};
 use nalgebra::{DMatrix, DVector};
+use record::{Curves, Record};
 
 /// Smallest number of cycles from which a scatter is estimated.
 const CYCLES: usize = 3;

@@ -4,7 +4,7 @@ use crate::localisation::parameter_drift::linear_record::LinearizedRecord;
 use crate::localisation::parameter_drift::shifts::{ParameterDrift, parameter_variations};
 use crate::model::experiments::Experiments;
 use crate::model::fit::Fit;
-use crate::record::measured::{Curves, Record, difference};
+use record::{Curves, Record, difference};
 use search::least_squares::Variable;
 
 /// Estimates by how much each unknown of a fit would have to vary between parts of the data; unknowns of the

@@ -211,7 +211,7 @@ fn tail(value: f64, squared_error: f64, cycles: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::record::measured::{Curves, Record, Stated, tests::recorded};
+    use record::{Curves, Record, Stated, recorded};
     use search::random::{Phase, Streams};
 
     const GRID: usize = 120;

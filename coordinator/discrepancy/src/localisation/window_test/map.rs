@@ -9,8 +9,8 @@
 use crate::localisation::residual::Residual;
 use crate::localisation::window_test::null::{Null, can_flip};
 use crate::localisation::window_test::windows::{WIDTHS, Windows, windows};
-use crate::record::bins::Bins;
 use nalgebra::DVector;
+use record::bins::Bins;
 use serde::{Deserialize, Serialize};
 
 /// Window of the abscissa in which the residual is significant.

@@ -3,6 +3,6 @@ pub(crate) mod map;
 pub(crate) mod null;
 pub(crate) mod windows;
 
-pub use crate::record::bins::{BINS, Bins};
 pub use map::{AbscissaWindow, AlongMap, map};
+pub use record::bins::{BINS, Bins};
 pub use windows::WIDTHS;

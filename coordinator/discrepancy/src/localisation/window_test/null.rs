@@ -2,8 +2,8 @@
 //! noise drawn from the metric.
 use crate::linear::tangent::Tangent;
 use crate::localisation::window_test::windows::{WIDTHS, Windows, windows};
-use crate::record::metric::Metric;
 use nalgebra::DVector;
+use record::metric::Metric;
 use search::random::{Phase, Streams};
 
 /// Returns whether sign flips of `cycles` cycles give at least `1 / alpha` different sets; the first cycle

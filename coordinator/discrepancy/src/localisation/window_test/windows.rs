@@ -1,6 +1,6 @@
 //! Means of a whitened residual over windows of the abscissa, without any test of significance.
-use crate::record::metric::Metric;
 use nalgebra::DVector;
+use record::metric::Metric;
 
 /// Widths of the windows in which the residual is averaged (bins).
 pub const WIDTHS: [usize; 3] = [5, 11, 21];

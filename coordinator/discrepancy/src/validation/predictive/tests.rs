@@ -1,9 +1,9 @@
 //! Tests of the predictive scores against dense Gaussian densities, and on records without an effect.
 use super::*;
 use crate::inputs::tests::case;
-use crate::record::measured::{Record, Stated, tests::recorded};
-use crate::record::whitened::WhitenedRecord;
+use crate::linear::whitened::WhitenedRecord;
 use crate::validation::scoring_metric::ScoringMetric;
+use record::{Record, Stated, recorded};
 use search::least_squares::Prior;
 
 fn variable(deviation: f64, bounds: [f64; 2]) -> Variable {

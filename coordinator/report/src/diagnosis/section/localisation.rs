@@ -6,8 +6,8 @@ use crate::words::{abscissa_quantity, join_words};
 use crate::{chart, kind};
 use discrepancy::localisation::summary::Localisation;
 use discrepancy::localisation::window_test::AbscissaWindow;
-use discrepancy::record::Record;
 use protocol::case::Abscissa;
+use record::Record;
 
 /// Maximum number of windows of the abscissa, and of residual peaks by order, listed in the text.
 const NAMED: usize = 6;

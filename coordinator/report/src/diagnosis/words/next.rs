@@ -3,8 +3,8 @@ use crate::diagnosis::subject::DiagnosisInput;
 use crate::number::percent;
 use crate::words::{command, join_words};
 use discrepancy::diagnose::Diagnosis;
-use discrepancy::record::noise::NoiseSource;
 use discrepancy::verdict::Verdict;
+use record::noise::NoiseSource;
 
 /// Lists the recommended next steps, one sentence each.
 pub(in crate::diagnosis) fn next(subject: &DiagnosisInput<'_>) -> Vec<String> {

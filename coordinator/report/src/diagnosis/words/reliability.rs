@@ -6,8 +6,8 @@ use crate::document::Fact;
 use crate::number::{interval, percent, quantity, significant};
 use crate::words::condition_name;
 use discrepancy::diagnose::ForceEstimate;
-use discrepancy::record::noise::NoiseSource;
 use discrepancy::validation::compare::{DataRole, GapRow};
+use record::noise::NoiseSource;
 
 /// Lists the sentences that state the confidence in the verdict.
 pub(in crate::diagnosis) fn confidence(subject: &DiagnosisInput<'_>) -> Vec<String> {

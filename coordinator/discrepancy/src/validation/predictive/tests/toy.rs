@@ -7,7 +7,7 @@
 use super::*;
 use crate::linear::discrepancy::{Discrepancy, SmoothBasis, Wave};
 use crate::linear::evidence::log_evidence;
-use crate::record::waves::curves;
+use crate::linear::waves::curves;
 use protocol::case::Abscissa;
 use search::random::{Phase, Stream, Streams};
 

@@ -14,7 +14,6 @@ use discrepancy::{
         window_test,
     },
     model::{Fit, FittedModel},
-    record::{Record, Recorded, Stated, noise::NoiseSource},
     validation::{
         compare::{DataRole, GapRow},
         gap_closure::Closed,
@@ -23,6 +22,7 @@ use discrepancy::{
     verdict::Verdict,
 };
 use protocol::case::Case;
+use record::{Record, Recorded, Stated, noise::NoiseSource};
 use report::{Origin, diagnosis::DiagnosisInput};
 use search::{
     least_squares::{LeastSquares, LeastSquaresSettings},

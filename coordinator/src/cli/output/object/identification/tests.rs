@@ -1,13 +1,11 @@
 //! Tests of the JSON object printed by `horsehead identify CASE --output json`: field names and values.
 use super::*;
 use case::{Overrides, load};
-use discrepancy::{
-    identify::{
-        Band, BandCurve, DeterminedUnknown, DirectionPart, IdentificationResult, IntervalEnd,
-    },
-    record::noise::NoiseSource,
+use discrepancy::identify::{
+    Band, BandCurve, DeterminedUnknown, DirectionPart, IdentificationResult, IntervalEnd,
 };
 use protocol::case::Case;
+use record::noise::NoiseSource;
 use report::document::TerminalStyle;
 use report::{Origin, identification::report};
 use std::path::Path;

@@ -1,8 +1,8 @@
 //! Waves of which the smooth discrepancy of a record is made, in units of the record's uncertainty.
 use crate::linear::discrepancy::{SmoothBasis, Wave};
-use crate::record::measured::{Curves, Record};
 use nalgebra::{DMatrix, DVector};
 use protocol::case::Abscissa;
+use record::{Curves, Record};
 use std::f64::consts::TAU;
 
 /// Largest number of cycles of a wave over the span of its channel: model errors are smooth, and the spectrum

@@ -1,6 +1,6 @@
 //! Measured records as the diagnosis takes them, cycle by cycle.
-use crate::record::input_scatter::InputScatter;
-use crate::record::nuisance::Nuisance;
+use crate::input_scatter::InputScatter;
+use crate::nuisance::Nuisance;
 use protocol::case::{Abscissa, Channel};
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
@@ -247,7 +247,7 @@ impl Record {
     }
 
     /// Returns the variance of the cycles about their mean by channel; zeros for fewer than two cycles.
-    pub(crate) fn scatter(&self) -> Vec<f64> {
+    pub fn scatter(&self) -> Vec<f64> {
         if self.cycles.len() < 2 {
             return vec![0.0; self.channels.len()];
         }
@@ -261,7 +261,7 @@ impl Record {
 }
 
 /// Returns the variance of cycles about their mean by channel; needs at least two cycles.
-pub(crate) fn scatter(cycles: &[Curves]) -> Vec<f64> {
+pub fn scatter(cycles: &[Curves]) -> Vec<f64> {
     let whole = mean_of(&cycles.iter().collect::<Vec<_>>());
     let of_cycle = |cycle: &Curves, c: usize| {
         let d: Vec<f64> = cycle[c].iter().zip(&whole[c]).map(|(y, m)| y - m).collect();
@@ -275,7 +275,7 @@ pub(crate) fn scatter(cycles: &[Curves]) -> Vec<f64> {
 }
 
 /// Returns the difference quotient of two sets of curves: `of` less `from`, divided by `per`.
-pub(crate) fn difference(of: &Curves, from: &Curves, per: f64) -> Curves {
+pub fn difference(of: &Curves, from: &Curves, per: f64) -> Curves {
     let channels = of.iter().zip(from);
     channels
         .map(|(of, from)| of.iter().zip(from).map(|(a, b)| (a - b) / per).collect())
@@ -283,7 +283,7 @@ pub(crate) fn difference(of: &Curves, from: &Curves, per: f64) -> Curves {
 }
 
 /// Returns the mean square of values about their mean.
-pub(crate) fn variance(values: &[f64]) -> f64 {
+pub fn variance(values: &[f64]) -> f64 {
     let n = values.len().max(1) as f64;
     let mean = values.iter().sum::<f64>() / n;
     values.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / n
@@ -291,7 +291,7 @@ pub(crate) fn variance(values: &[f64]) -> f64 {
 
 /// Returns the mean square of values, about their mean unless `absolute`. A single value is squared as it is,
 /// since it has no mean to be taken about.
-pub(crate) fn power(values: &[f64], absolute: bool) -> f64 {
+pub fn power(values: &[f64], absolute: bool) -> f64 {
     let about_zero = || values.iter().map(|x| x * x).sum::<f64>() / values.len().max(1) as f64;
     match values {
         [_] => about_zero(),
@@ -315,42 +315,44 @@ pub fn mean_of(cycles: &[&Curves]) -> Curves {
     shapes.map(|(c, length)| channel(c, length)).collect()
 }
 
-#[cfg(test)]
-pub(crate) mod tests {
-    use super::*;
+/// Creates a channel on which the gap is counted; `curve` is its index among the curves of an
+/// observation.
+#[cfg(any(test, feature = "fixtures"))]
+pub fn recorded(curve: usize) -> Recorded {
     use protocol::case::Offset;
 
-    /// Creates a channel on which the gap is counted; `curve` is its index among the curves of an
-    /// observation.
-    pub(crate) fn recorded(curve: usize) -> Recorded {
-        let channel = Channel {
-            limit: None,
-            name: format!("channel_{curve}"),
-            title: format!("channel {curve}"),
-            unit: "N".to_owned(),
-            condition: 0,
-            abscissa: Abscissa {
-                name: "turn".to_owned(),
-                unit: "deg".to_owned(),
-                points: Vec::new(),
-                period: Some(360.0),
-            },
-            noise: None,
-            step: None,
-            weights: Vec::new(),
-            offset: Offset::Free,
-            record: None,
-        };
-        Recorded {
-            curve,
-            rows: None,
-            scored: true,
-            held_out: false,
-            correlation: None,
-            model_error: None,
-            channel,
-        }
+    let channel = Channel {
+        limit: None,
+        name: format!("channel_{curve}"),
+        title: format!("channel {curve}"),
+        unit: "N".to_owned(),
+        condition: 0,
+        abscissa: Abscissa {
+            name: "turn".to_owned(),
+            unit: "deg".to_owned(),
+            points: Vec::new(),
+            period: Some(360.0),
+        },
+        noise: None,
+        step: None,
+        weights: Vec::new(),
+        offset: Offset::Free,
+        record: None,
+    };
+    Recorded {
+        curve,
+        rows: None,
+        scored: true,
+        held_out: false,
+        correlation: None,
+        model_error: None,
+        channel,
     }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
 
     #[test]
     fn the_gap_is_counted_on_what_is_marked_and_else_on_everything() {

@@ -5,16 +5,23 @@
 //! towards its diagonal as far as the small number of cycles demands. With one cycle
 //! there is no scatter: the noise is then taken from the channels' statements and from the roughness of the
 //! curves, and all results are marked as resting on that assumption.
-use crate::linear::score::student;
-use crate::record::basis::{Basis, ChannelGroup, smoothed};
-use crate::record::measured::Record;
-use crate::record::scatter::unexplained;
-use crate::record::spectrum::{Orders, Spectra};
-use crate::thresholds::{STATED, WIDEST};
+use crate::basis::{Basis, ChannelGroup, smoothed};
+use crate::measured::Record;
+use crate::scatter::unexplained;
+use crate::spectrum::{Orders, Spectra};
 use nalgebra::{Complex, DMatrix, DVector};
 use serde::{Deserialize, Serialize};
+use statrs::distribution::{ContinuousCDF, StudentsT};
 
 type C = Complex<f64>;
+
+/// Factor by which a variance stated in a data sheet may be off, either way: noise that is stated in one
+/// figure is rarely better known. A residual beyond that is no noise, or not the stated noise.
+pub const STATED: f64 = 2.0;
+
+/// Largest factor by which noise variances from few cycles are widened: that of six degrees of freedom. With
+/// fewer the variance of Student's distribution is hardly meaningful or does not exist.
+const WIDEST: f64 = 1.5;
 
 /// Way in which a record's noise is known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -260,7 +267,7 @@ fn assumed(record: &Record, group: &ChannelGroup) -> Vec<DMatrix<C>> {
 /// Returns the factor by which the inverse of a covariance of complex values, estimated from `terms` of them,
 /// exceeds the inverse of the true covariance in the mean (complex inverse Wishart distribution); `coupled` is
 /// the number of channels whose covariances are estimated together, 1 for a variance. At most [`WIDEST`].
-pub(crate) fn widening(terms: f64, coupled: f64) -> f64 {
+pub fn widening(terms: f64, coupled: f64) -> f64 {
     if terms > coupled {
         (terms / (terms - coupled)).min(WIDEST)
     } else {
@@ -284,11 +291,20 @@ fn shrink(mut covariance: DMatrix<C>, terms: f64) -> (DMatrix<C>, f64) {
     (covariance, 1.0 + (channels - 1.0) * keep * keep)
 }
 
+/// Returns the half-width of a two-sided 95 % interval in standard deviations: the quantile of Student's
+/// distribution with `freedom` degrees of freedom (at least one), 1.96 where the standard deviation is known
+/// exactly.
+pub fn student(freedom: f64) -> f64 {
+    // beyond ten thousand its third digit no longer changes
+    StudentsT::new(0.0, 1.0, freedom.clamp(1.0, 1e4))
+        .map_or(f64::INFINITY, |law| law.inverse_cdf(0.975))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::record::measured::Stated;
-    use crate::record::measured::tests::recorded;
+    use crate::measured::Stated;
+    use crate::measured::recorded;
 
     /// Checks that the model error, stated in the unit of an unweighted value, is multiplied by the squared
     /// weight exactly once.
@@ -324,6 +340,13 @@ mod tests {
                 (after - before - expected).abs() < 1e-12 * expected.max(before),
                 "{place}: {after} - {before} is not {expected}"
             );
+        }
+    }
+
+    #[test]
+    fn half_widths_are_those_of_the_table_of_student() {
+        for (freedom, quantile) in [(1.0, 12.706), (9.0, 2.262), (f64::INFINITY, 1.960)] {
+            assert!((student(freedom) - quantile).abs() < 1e-3, "{freedom}");
         }
     }
 }

@@ -1,9 +1,9 @@
 //! Coordinates in which curves are compared: orders of a period where the abscissa is periodic with equal
 //! steps, samples elsewhere. Callers that whiten or map curves need not know which basis is used.
-use crate::record::measured::Record;
-use crate::record::samples::Samples;
-use crate::record::scatter::unexplained;
-use crate::record::spectrum::{Orders, Spectra};
+use crate::measured::Record;
+use crate::samples::Samples;
+use crate::scatter::unexplained;
+use crate::spectrum::{Orders, Spectra};
 use nalgebra::Complex;
 use protocol::case::{Abscissa, Channel};
 use std::ops::RangeInclusive;
@@ -301,7 +301,7 @@ fn samples(
 
 /// Returns the powers of a curve's basis coefficients, each averaged over the neighbouring coefficients at
 /// which noise is about as strong.
-pub(crate) fn smoothed(basis: &Basis, powers: &[f64]) -> Vec<f64> {
+pub fn smoothed(basis: &Basis, powers: &[f64]) -> Vec<f64> {
     let mean = |place: usize| {
         let about = basis.neighbours(place);
         let count = about.clone().count();

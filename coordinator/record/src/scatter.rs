@@ -1,6 +1,6 @@
 //! Scatter of cycles about their mean, less the part that their input explains. The module knows no noise
 //! model.
-use crate::record::spectrum::Spectra;
+use crate::spectrum::Spectra;
 use nalgebra::{Complex, DMatrix, DVector};
 
 type C = Complex<f64>;

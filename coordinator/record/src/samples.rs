@@ -7,7 +7,7 @@
 //! that n samples give n - 1 entries. Where it has a fixed zero, the constant and the first order of the span
 //! (for eight samples and more) become the first three entries: cycles that drift scatter more in these than
 //! from sample to sample. Values with unequal weights are multiplied by their weights first.
-use crate::record::measured::power;
+use crate::measured::power;
 use nalgebra::Complex;
 use protocol::case::Channel;
 
@@ -255,7 +255,7 @@ fn length_of(x: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::record::measured::tests::recorded;
+    use crate::measured::recorded;
     use protocol::case::{Abscissa, Offset};
     use search::random::{Phase, Streams};
 

@@ -1,5 +1,5 @@
 //! Equal bins of an abscissa, and the values of a whitened curve in them.
-use crate::record::basis::{Basis, ChannelGroup};
+use crate::basis::{Basis, ChannelGroup};
 use nalgebra::Complex;
 use serde::{Deserialize, Serialize};
 
@@ -55,7 +55,7 @@ impl Bins {
     }
 
     /// Returns the mean of the values in each window of `width` bins, indexed by the window's first bin.
-    pub(crate) fn moving_mean(&self, values: &[f64], width: usize) -> Vec<f64> {
+    pub fn moving_mean(&self, values: &[f64], width: usize) -> Vec<f64> {
         let n = values.len();
         let mut sum: f64 = values.iter().take(width).sum();
         (0..self.windows(width))
@@ -70,7 +70,7 @@ impl Bins {
 
 /// Returns a channel's whitened basis coefficients as values along the abscissa, one per bin; `row` is the
 /// index of the channel in its group.
-pub(crate) fn along(group: &ChannelGroup, row: usize, entries: &[Complex<f64>]) -> Vec<f64> {
+pub fn along(group: &ChannelGroup, row: usize, entries: &[Complex<f64>]) -> Vec<f64> {
     match &group.basis {
         Basis::Orders(_) => turn(entries),
         Basis::Samples(samples) => {

@@ -4,11 +4,11 @@
 //! sample) are divided by the Cholesky factor of their covariance. Errors of the measured input are
 //! marginalised: with nuisance columns N of standard deviations T, `(I + N T^2 N^T)^(-1/2)` is applied on
 //! top. Every entry of a residual that is noise alone then has variance 1.
-use crate::record::basis::{ChannelGroup, smoothed};
-use crate::record::bins::{Bins, along};
-use crate::record::measured::Curves;
-use crate::record::noise::{Noise, NoiseSource, widening};
-use crate::record::spectrum::Spectra;
+use crate::basis::{ChannelGroup, smoothed};
+use crate::bins::{Bins, along};
+use crate::measured::Curves;
+use crate::noise::{Noise, NoiseSource, widening};
+use crate::spectrum::Spectra;
 use nalgebra::{Complex, DMatrix, DVector};
 
 type C = Complex<f64>;
@@ -293,7 +293,7 @@ impl Metric {
     }
 
     /// Returns the derivative of each curve by its abscissa.
-    pub(crate) fn slopes(&self, curves: &Curves) -> Curves {
+    pub fn slopes(&self, curves: &Curves) -> Curves {
         self.by_channel(|block, row| block.group.slope(&curves[block.group.channels[row]]))
     }
 
@@ -375,8 +375,8 @@ impl Metric {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::record::basis::Basis;
-    use crate::record::spectrum::Orders;
+    use crate::basis::Basis;
+    use crate::spectrum::Orders;
     use protocol::case::Abscissa;
 
     fn group() -> ChannelGroup {

@@ -1,12 +1,12 @@
 //! Record with its metric, the reference with which every simulation is compared.
 use crate::linear::discrepancy::SmoothBasis;
-use crate::record::basis::ChannelGroup;
-use crate::record::measured::{Curves, Record};
-use crate::record::metric::Metric;
-use crate::record::noise::Noise;
-use crate::record::waves::smooth_basis;
+use crate::linear::waves::smooth_basis;
 use nalgebra::DVector;
 use protocol::job::Numerics;
+use record::basis::ChannelGroup;
+use record::metric::Metric;
+use record::noise::Noise;
+use record::{Curves, Record};
 use std::sync::Arc;
 
 /// Record with the metric in which residuals are whitened.
