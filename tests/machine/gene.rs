@@ -22,8 +22,7 @@ use search::strategy::{
 };
 use std::collections::VecDeque;
 use study::{
-    Calibrated, Completed, Evaluator, EvaluatorError, ProgressView, Watch, WorkersSnapshot,
-    calibrate,
+    Calibrated, Completed, Evaluator, EvaluatorError, ProgressView, Snapshot, Watch, calibrate,
 };
 use worker::handler::Prepared;
 
@@ -209,15 +208,15 @@ impl Evaluator for LocalEvaluator {
         })
     }
 
-    fn workers_status(&self) -> WorkersSnapshot {
-        WorkersSnapshot::default()
+    fn snapshot(&self) -> Snapshot {
+        Snapshot::default()
     }
 }
 
 struct Unseen;
 
 impl Watch<ProgressView> for Unseen {
-    fn progress(&mut self, _: &ProgressView, _: &dyn Fn() -> WorkersSnapshot) {}
+    fn progress(&mut self, _: &ProgressView, _: &dyn Fn() -> Snapshot) {}
 }
 
 fn calibrated(case: &Case, parts: Vec<SearchPart>) -> Calibrated {

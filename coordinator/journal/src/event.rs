@@ -155,6 +155,20 @@ pub struct WorkerAccount {
     pub spent: Spent,
 }
 
+impl WorkerAccount {
+    /// Returns the computing time of the worker's accepted results, summed over its slots \[s\].
+    pub fn busy_s(&self) -> f64 {
+        self.spent.useful_us as f64 / 1e6
+    }
+
+    /// Returns the share of the worker's slot time spent on accepted results, 0 to 1; `None` if the worker was not
+    /// connected for a measurable time.
+    pub fn busy_share(&self) -> Option<f64> {
+        let connected_us = self.spent.connected_us as f64;
+        (connected_us > 0.0).then(|| self.spent.useful_us as f64 / connected_us)
+    }
+}
+
 /// Slot time by use \[us\]; all uses add up to the time for which slots were connected.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Spent {

@@ -21,6 +21,7 @@ pub mod event;
 mod follow;
 mod head;
 mod index;
+pub mod job_range;
 mod numbers;
 mod open;
 mod read;

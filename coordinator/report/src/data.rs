@@ -4,7 +4,7 @@
 use discrepancy::identify::{Determination, UnknownEstimate};
 use discrepancy::validation::gap::Gap;
 use journal::account::{JobCost, Presence};
-use journal::event::Spent;
+use journal::event::{Spent, WorkerAccount};
 use protocol::case::{Case, Channel, ChannelRecord, WeightedCondition};
 use protocol::job::{Curves, Evaluation, Verdict};
 
@@ -37,34 +37,6 @@ pub struct HistoryPoint {
     pub failure: Option<String>,
     /// Cost of the simulation; `None` if unknown.
     pub cost: Option<JobCost>,
-}
-
-/// Contribution of one worker to a run: results, failures, computing and connected time.
-#[derive(Clone, Debug, PartialEq)]
-pub struct WorkerUse {
-    /// Name of the worker, as shown in tables.
-    pub name: String,
-    /// Host on which the worker ran.
-    pub host: String,
-    /// Number of simulations at a time.
-    pub slots: u32,
-    /// Number of accepted results.
-    pub done: u64,
-    /// Number of failed jobs.
-    pub failed: u64,
-    /// Computing time summed over slots, in seconds.
-    pub busy_s: f64,
-    /// Time for which the worker was connected, in seconds.
-    pub present_s: f64,
-}
-
-impl WorkerUse {
-    /// Returns the share of the worker's slot time spent computing, 0 to 1; `None` if the worker was not
-    /// connected for a measurable time.
-    pub fn busy_share(&self) -> Option<f64> {
-        let available_s = self.present_s * f64::from(self.slots);
-        (available_s > 0.0 && self.busy_s.is_finite()).then(|| self.busy_s / available_s)
-    }
 }
 
 /// Result of simulating one parameter set under one condition: agreement with the measured record, and
@@ -171,7 +143,7 @@ pub struct Calibration {
     /// The evaluation log in index order.
     pub history: Vec<HistoryPoint>,
     /// Contribution of each worker to the calibration.
-    pub workers: Vec<WorkerUse>,
+    pub workers: Vec<WorkerAccount>,
     /// Presence of the workers over the working time of the run.
     pub presence: Vec<Presence>,
     /// Slot time of all workers by use, over all sessions of the run.

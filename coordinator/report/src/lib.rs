@@ -34,7 +34,7 @@ mod write;
 
 pub use data::{
     Calibration, ConditionResult, HistoryPoint, Individual, Origin, RivalFit, Run, SimulationView,
-    SingleRun, WorkerUse, is_determined,
+    SingleRun, is_determined,
 };
 pub use document::{Block, Figure, Report, Section, Table, page, text};
 pub use drawing::ModelReport;

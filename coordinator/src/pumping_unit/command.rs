@@ -318,7 +318,7 @@ fn reduce_once(mut unit: PumpingUnit, spec: &ReduceHeadSpec) -> anyhow::Result<R
     unit.machine.twin_ropes = None;
     let known = unit.machine.modal_head.frequencies_hz.len();
     unit.machine.run.modes = unit.machine.run.modes.min(known);
-    with_temporary_run(&unit.into_case()?, "head", 1, async |bus, stop| {
-        reduce_head(bus, spec, stop).await
+    with_temporary_run(&unit.into_case()?, "head", 1, async |dispatch, stop| {
+        reduce_head(dispatch, spec, stop).await
     })
 }

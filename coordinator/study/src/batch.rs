@@ -80,7 +80,7 @@ pub async fn score_all<E: Evaluator>(
         expected: jobs.len() as u64,
         ..ProgressView::default()
     };
-    watch.progress(&view, &|| evaluator.workers_status());
+    watch.progress(&view, &|| evaluator.snapshot());
     let reason = JobReason::outside_search(EVALUATION);
     let mut found: BTreeMap<usize, Scored> = BTreeMap::new();
     run_batch(
@@ -91,7 +91,7 @@ pub async fn score_all<E: Evaluator>(
         |evaluator, place, completed| {
             let scored = scored(completed.id, completed.outcome)?;
             view.add(complete(&scored), completed.replayed);
-            watch.progress(&view, &|| evaluator.workers_status());
+            watch.progress(&view, &|| evaluator.snapshot());
             let own = indices.get(place).into_iter().flatten();
             found.extend(own.map(|index| (*index, scored.clone())));
             Ok(())

@@ -60,7 +60,7 @@ pub async fn calibrate<E: Evaluator>(
             evaluator.anticipate(anticipated(case, strategy))?;
         }
         view.plan(&strategy.progress());
-        watch.progress(&view, &|| evaluator.workers_status());
+        watch.progress(&view, &|| evaluator.snapshot());
         if let (Some(finish), Some(best)) = (strategy.finished(), strategy.best()) {
             // which further results have come depends on the order of arrival
             log.truncate(strategy.archive().entries().len() as u64);

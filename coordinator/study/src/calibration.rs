@@ -57,7 +57,7 @@ pub async fn calibrate_case<E: Evaluator>(
     // workers may be long in coming
     let mut view = ProgressView::default();
     view.plan(&strategy.progress());
-    watch.progress(&view, &|| evaluator.workers_status());
+    watch.progress(&view, &|| evaluator.snapshot());
     let first = match compare(evaluator, case, &wanted, stop).await {
         // others may do better; without a comparison there is no report
         Err(error @ StudyError::Unavailable { .. }) => Err(error),

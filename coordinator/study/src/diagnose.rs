@@ -5,13 +5,13 @@ use super::{
     error::StudyError,
     evaluator::Evaluator,
     experiments::{Jobs, StageView},
-    job_number::EXPERIMENTS,
     stop::Stop,
     watch::Watch,
 };
 use discrepancy::diagnose::{Inputs, diagnose};
 use discrepancy::laboratory::Stage;
 use discrepancy::model::InactiveUnknowns;
+use journal::job_range::EXPERIMENTS;
 
 /// Runs a diagnosis of model deficiencies, with an evaluator that computes its simulations; the notes of the result
 /// are empty.

@@ -2,13 +2,12 @@
 use super::entry::Entry;
 use super::error::{EvaluatorError, StudyError};
 use super::job_number::JobNumbers;
-use dispatch::scheduler::Completed;
-use journal::event::{JobReason, Spent};
+use dispatch::scheduler::{Completed, Snapshot};
+use journal::event::JobReason;
 use protocol::{
     id::JobId,
     job::{Answer, Job, UnexpectedAnswer},
 };
-use std::time::Duration;
 
 /// Interface to the computing of a study's jobs, which are completed in any order.
 pub trait Evaluator {
@@ -56,8 +55,8 @@ pub trait Evaluator {
         Ok(JobNumbers::default())
     }
 
-    /// Returns the present status of the workers.
-    fn workers_status(&self) -> WorkersSnapshot;
+    /// Returns the present state of the workers and their jobs.
+    fn snapshot(&self) -> Snapshot;
 }
 
 /// Extracts the expected kind of answer from a completed job by `take`; `what` names the job's purpose in an
@@ -76,44 +75,4 @@ pub fn answer<T>(
         .done()
         .map_err(|failure| StudyError::of(failure, what))?;
     take(answer).map_err(|_| StudyError::WrongKind { id })
-}
-
-/// Status of all workers of a run, for display.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct WorkersSnapshot {
-    /// All workers that joined in this session, including those that left.
-    pub workers: Vec<WorkerStatus>,
-    /// Number of jobs waiting for a worker.
-    pub queued: usize,
-    /// Number of jobs being computed.
-    pub running: usize,
-    /// Slot time of all workers in this session, divided by use (computing, waiting, lost and others); a slot
-    /// is a place for one job at a time.
-    pub spent: Spent,
-    /// Time in this session during which at least one worker was computing; excludes waiting for workers and
-    /// for their model setup.
-    pub computing: Duration,
-}
-
-/// Status of one worker.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct WorkerStatus {
-    /// Name of the worker.
-    pub name: String,
-    /// Host on which the worker runs.
-    pub host: String,
-    /// Whether the worker is currently connected.
-    pub attached: bool,
-    /// Number of simulations that the worker runs in parallel.
-    pub slots: u32,
-    /// Number of the worker's slots that are currently computing.
-    pub busy: u32,
-    /// Number of the worker's jobs whose result was accepted.
-    pub done: u64,
-    /// Number of jobs that failed on this worker.
-    pub failed: u64,
-    /// Computing time of the worker, summed over its slots (s).
-    pub busy_s: f64,
-    /// Time for which the worker has been connected (s).
-    pub present_s: f64,
 }

@@ -7,7 +7,6 @@ use super::{
     entry::StageCost,
     error::StudyError,
     evaluator::{Evaluator, answer},
-    job_number::LIBRARY,
     stop::Stop,
     watch::{View, Watch},
 };
@@ -15,6 +14,7 @@ use discrepancy::baseline::budget::cost;
 use discrepancy::diagnose::Inputs;
 use discrepancy::laboratory::{Finding, Laboratory, Stage};
 use journal::event::JobReason;
+use journal::job_range::LIBRARY;
 use protocol::{
     announce::EffectDescriptor,
     id::JobId,
@@ -175,7 +175,7 @@ impl<E: Evaluator> Laboratory for Jobs<'_, E> {
                     spent: *spent,
                     left: left[stage as usize].max(0.0),
                 };
-                watch.progress(&view, &|| evaluator.workers_status());
+                watch.progress(&view, &|| evaluator.snapshot());
                 Ok(())
             },
         )

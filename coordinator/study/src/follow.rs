@@ -2,11 +2,8 @@
 //!
 //! A study on this evaluator repeats the run as its results arrive, knows everything that the run's own study
 //! knows, and changes nothing in the run folder.
-use super::{
-    error::EvaluatorError,
-    evaluator::{Evaluator, WorkersSnapshot},
-};
-use dispatch::scheduler::Completed;
+use super::{error::EvaluatorError, evaluator::Evaluator};
+use dispatch::scheduler::{Completed, Snapshot};
 use journal::event::{Event, Finished, JobReason};
 use journal::{Damage, Growth, JournalEntry, JournalFollower};
 use protocol::{id::JobId, job::Job};
@@ -99,6 +96,7 @@ fn failed(error: &dyn std::fmt::Display) -> EvaluatorError {
     EvaluatorError {
         message: error.to_string(),
         help: None,
+        may_go_on: false,
     }
 }
 
@@ -125,7 +123,7 @@ impl<O: FollowObserver> Evaluator for FollowingEvaluator<'_, O> {
         }
     }
 
-    fn workers_status(&self) -> WorkersSnapshot {
-        WorkersSnapshot::default()
+    fn snapshot(&self) -> Snapshot {
+        Snapshot::default()
     }
 }

@@ -5,13 +5,13 @@ use super::{
     error::StudyError,
     evaluator::Evaluator,
     experiments::{Jobs, StageView},
-    job_number::{EXPERIMENTS, IDENTIFIABILITY_JOBS},
     stop::Stop,
     watch::Watch,
 };
 use discrepancy::diagnose::Inputs;
 use discrepancy::identify::{LinearEstimate, identify, linear_estimate};
 use discrepancy::laboratory::Stage;
+use journal::job_range::{EXPERIMENTS, IDENTIFIABILITY};
 use protocol::case::{Case, Channel};
 
 /// Stages through which an identification may pass, in order.
@@ -63,7 +63,7 @@ pub async fn estimate_at_start_on<E: Evaluator>(
     stop: &mut Stop,
 ) -> Result<Option<LinearEstimate>, StudyError> {
     let mut jobs = Jobs::new(
-        (evaluator, IDENTIFIABILITY_JOBS),
+        (evaluator, IDENTIFIABILITY),
         inputs,
         &[Stage::Show],
         watch,

@@ -1,30 +1,15 @@
-//! Numbers of the jobs of a run: a job keeps its number in the journal, so that a resumed run finds its
-//! result.
-//!
-//! A search numbers its individuals from 0 in the order of its proposals; a diagnosis and an identification
-//! number their experiments from [`EXPERIMENTS`] in the order of request. Comparisons and the identifiability
-//! estimate after a calibration have separate higher ranges, so that numbers never collide.
+//! Numbers of the jobs of a study, within the ranges of [`journal::job_range`].
 //!
 //! Requests of `evaluate`, of a table and of a sweep come in any order, and equal ones are computed once:
 //! their numbers are derived from the hashes of their content ([`JobNumbers`]). If the hashes of two jobs
 //! begin alike, the second job takes another number; the journal stores the whole hash with each number,
 //! which makes this unambiguous.
+use journal::job_range::{COMPARISONS, CONTENT_BITS, IDENTIFIABILITY};
 use protocol::{
     id::{ContentHash, JobId},
     job::Job,
 };
 use std::collections::BTreeMap;
-
-/// Number of the job that asks a worker for its effects.
-pub(super) const LIBRARY: u64 = 0;
-/// Number of the first experiment of a diagnosis or an identification.
-pub(super) const EXPERIMENTS: u64 = LIBRARY + 1;
-/// Number of the first experiment of the identifiability estimate after a calibration; above the numbers of
-/// its individuals and comparisons.
-pub(super) const IDENTIFIABILITY_JOBS: u64 = 1 << 50;
-/// Number of the first comparison job, which scores or simulates a selected individual; above the job number
-/// of any individual of a search.
-const COMPARISONS: u64 = 1 << 40;
 
 /// Returns the number of the first of the two jobs (score and curves) of a compared individual; each
 /// condition has numbers for 256 individuals.
@@ -36,17 +21,13 @@ pub(super) fn of_comparison(condition: usize, position: usize) -> u64 {
 pub(super) fn compared_individual(JobId(number): JobId) -> Option<(usize, usize)> {
     let place = number.checked_sub(COMPARISONS)?;
     let position = usize::try_from((place % 512) / 2).ok()?;
-    (number < IDENTIFIABILITY_JOBS).then_some((usize::try_from(place >> 9).ok()?, position))
+    (number < IDENTIFIABILITY).then_some((usize::try_from(place >> 9).ok()?, position))
 }
 
 /// Returns the number of the proposal that a job of a search evaluates; `None` for other jobs.
 pub(super) fn proposal_number(JobId(number): JobId) -> Option<u64> {
     (number < COMPARISONS).then_some(number)
 }
-
-/// Number of bits of a hash that form a job number; every table format represents integers of this size
-/// exactly.
-const BITS: u32 = 48;
 
 /// Map between the contents of a run's jobs (by hash) and their numbers.
 #[derive(Clone, Debug)]
@@ -58,7 +39,7 @@ pub struct JobNumbers {
 
 impl Default for JobNumbers {
     fn default() -> Self {
-        Self::with_bits(BITS)
+        Self::with_bits(CONTENT_BITS)
     }
 }
 

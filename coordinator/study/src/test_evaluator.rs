@@ -18,7 +18,7 @@ use search::{
     test_function::RESONANCE,
 };
 use std::{collections::BTreeMap, path::Path};
-use study::{Completed, Evaluator, EvaluatorError, JobNumbers, WorkersSnapshot};
+use study::{Completed, Evaluator, EvaluatorError, JobNumbers, Snapshot};
 
 /// Evaluator that answers jobs in a random order; `known` holds results of an earlier session.
 pub(crate) struct TestEvaluator {
@@ -96,10 +96,10 @@ impl Evaluator for TestEvaluator {
         Ok(self.numbers.clone())
     }
 
-    fn workers_status(&self) -> WorkersSnapshot {
-        WorkersSnapshot {
+    fn snapshot(&self) -> Snapshot {
+        Snapshot {
             queued: self.open.len(),
-            ..WorkersSnapshot::default()
+            ..Snapshot::default()
         }
     }
 }

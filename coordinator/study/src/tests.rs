@@ -19,7 +19,7 @@ use tokio::sync::watch;
 struct Quiet(Vec<ProgressView>);
 
 impl Watch<ProgressView> for Quiet {
-    fn progress(&mut self, view: &ProgressView, _crew: &dyn Fn() -> WorkersSnapshot) {
+    fn progress(&mut self, view: &ProgressView, _crew: &dyn Fn() -> Snapshot) {
         self.0.push(view.clone());
     }
 }

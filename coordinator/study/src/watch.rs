@@ -1,5 +1,5 @@
 //! Observer of a study, for display only: no influence on results.
-use super::evaluator::WorkersSnapshot;
+use dispatch::scheduler::Snapshot;
 
 /// Progress data that a kind of study (search, diagnosis, ..) reports to its observer.
 pub trait View {
@@ -11,7 +11,7 @@ pub trait View {
 pub trait Watch<V: View> {
     /// Receives the study's progress whenever a result has arrived or the plan has changed; `crew` returns
     /// the status of the workers.
-    fn progress(&mut self, view: &V, crew: &dyn Fn() -> WorkersSnapshot);
+    fn progress(&mut self, view: &V, crew: &dyn Fn() -> Snapshot);
 
     /// Receives the number of results from an earlier session, before any other call.
     fn resumed(&mut self, _recorded: usize) {}

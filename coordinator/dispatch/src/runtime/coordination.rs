@@ -3,8 +3,9 @@
 //!
 //! Parts do not leave this module: commands concern the jobs that were submitted.
 use super::divide::{DividedJobs, PartResult, is_divisible, is_not_stored, part_count};
-use crate::scheduler::{Command, Completed, Core, Input, Notice, StopReason, is_part};
+use crate::scheduler::{Command, Completed, Core, Input, Notice, StopReason};
 use journal::event::Finished;
+use journal::job_range::is_part;
 use protocol::{
     id::JobId,
     job::{Job, Outcome},

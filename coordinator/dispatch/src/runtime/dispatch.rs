@@ -19,9 +19,14 @@ use link::{
 };
 use protocol::{
     id::{ContentHash, JobId, RunId},
-    job::Job,
+    job::{Job, Outcome},
 };
-use std::sync::{Arc, Mutex, PoisonError};
+use std::{
+    cmp::Reverse,
+    collections::BTreeMap,
+    path::PathBuf,
+    sync::{Arc, Mutex, PoisonError},
+};
 use tempfile::TempDir;
 use tokio::{
     sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel},
@@ -43,6 +48,10 @@ pub struct Dispatch {
     engine: JoinHandle<RunSummary>,
     listening: Vec<Locator>,
     recorded: usize,
+    /// Run folder with the journal.
+    run_dir: PathBuf,
+    /// Number of jobs that could not be computed and the first of their reasons, by the first line of the reason.
+    failures: BTreeMap<String, (usize, String)>,
     /// Control socket of the run; `None` if it could not be opened.
     control: Option<Control>,
     /// Folder of the socket for local workers, deleted with this value; `None` if none was made.
@@ -92,7 +101,9 @@ impl Dispatch {
             _ => None,
         };
         let only_local = options.listen.is_none();
-        let mut open = Self::begin((parts, entries), link, workers, only_local, listening);
+        let run_dir = options.run_dir.clone();
+        let mut open = Self::begin((parts, entries), link, workers, only_local, run_dir);
+        open.listening = listening;
         open.socket_folder = folder;
         // a sender of its own would keep the run open for ever
         let requests = open.requests.downgrade();
@@ -119,7 +130,8 @@ impl Dispatch {
     ) -> Result<Self, DispatchError> {
         let (parts, entries) = Parts::open(options)?;
         let link = make(parts.run, parts.blob.clone());
-        Ok(Self::begin((parts, entries), link, None, false, Vec::new()))
+        let run_dir = options.run_dir.clone();
+        Ok(Self::begin((parts, entries), link, None, false, run_dir))
     }
 
     fn begin<L: CoordinatorEnd>(
@@ -127,7 +139,7 @@ impl Dispatch {
         link: L,
         workers: Option<LocalWorkers>,
         only_local: bool,
-        listening: Vec<Locator>,
+        run_dir: PathBuf,
     ) -> Self {
         let recorded = parts.journal.len();
         let (requests, asked) = unbounded_channel();
@@ -144,8 +156,10 @@ impl Dispatch {
             entries,
             snapshot,
             engine,
-            listening,
+            listening: Vec::new(),
             recorded,
+            run_dir,
+            failures: BTreeMap::new(),
             control: None,
             socket_folder: None,
         }
@@ -182,7 +196,7 @@ impl Dispatch {
     /// # Errors
     /// [`DispatchError::Journal`] if the recorded entry is another one, [`DispatchError::Closed`] once the run has been
     /// stopped.
-    pub fn enter(&mut self, entry: Vec<u8>) -> Result<(), DispatchError> {
+    pub fn record(&mut self, entry: Vec<u8>) -> Result<(), DispatchError> {
         let Some(event) = self.entries.enter(entry)? else {
             return Ok(());
         };
@@ -222,10 +236,28 @@ impl Dispatch {
     /// The reason why the run cannot go on; afterwards only [`Self::close`] is useful.
     pub async fn next(&mut self) -> Result<Completed, DispatchError> {
         self.send_divisible()?;
-        self.completed
-            .recv()
-            .await
-            .unwrap_or(Err(DispatchError::Closed))
+        let completed = self.completed.recv().await;
+        let completed = completed.unwrap_or(Err(DispatchError::Closed))?;
+        if let Outcome::Failed(failure) = &completed.outcome {
+            let reason = failure.to_string();
+            // what a program printed may differ from run to run
+            let first = reason.lines().next().unwrap_or_default().to_owned();
+            self.failures.entry(first).or_insert((0, reason)).0 += 1;
+        }
+        Ok(completed)
+    }
+
+    /// Returns how many of the jobs returned by [`Self::next`] could not be computed for the same reason, with the words
+    /// of the first, the most frequent reason first. Reasons are the same where their first lines are.
+    pub fn failures(&self) -> Vec<&(usize, String)> {
+        let mut all: Vec<_> = self.failures.values().collect();
+        all.sort_by_key(|(count, _)| Reverse(*count));
+        all
+    }
+
+    /// Returns the path of the run's journal.
+    pub fn journal(&self) -> PathBuf {
+        self.run_dir.join(journal::FILE)
     }
 
     /// Returns the state of the run (jobs, workers, slot time), at most some hundredths of a second old.
@@ -239,7 +271,7 @@ impl Dispatch {
     /// Returns whether some slot had no job when the last snapshot was taken, or computed a job ahead.
     pub fn has_idle_slots(&self) -> bool {
         let snapshot = self.snapshot.lock().unwrap_or_else(PoisonError::into_inner);
-        !self.anticipated.is_empty() || snapshot.workers.iter().any(|own| own.busy < own.slots)
+        !self.anticipated.is_empty() || snapshot.idle > 0
     }
 
     /// Ends the run: tells workers, ends local workers and closes the journal, within 3 s. On a full disk it

@@ -10,8 +10,9 @@
 #[cfg(test)]
 mod tests;
 
-use crate::scheduler::{Completed, PART};
+use crate::scheduler::Completed;
 use journal::event::Finished;
+use journal::job_range::PARTS;
 use protocol::{
     id::{ContentHash, JobId},
     job::{Answer, Column, Derivative, Failure, Job, Outcome, Reply},
@@ -170,7 +171,7 @@ impl DividedJobs {
         let columns: Vec<usize> = new.iter().map(column_count).collect();
         for (job, count) in new.into_iter().zip(anticipated_parts(&columns, idle)) {
             self.anticipated_count += 1;
-            let id = JobId(PART | self.anticipated_count);
+            let id = JobId(PARTS | self.anticipated_count);
             self.anticipated.push(id);
             change.parts.extend(self.open(id, job, count));
         }
@@ -317,7 +318,7 @@ pub(crate) const fn is_not_stored(failure: &Failure) -> bool {
 fn part_id(whole: JobId, part: &Job) -> JobId {
     let content = [&whole.0.to_le_bytes()[..], &part.work_hash().0].concat();
     let [a, b, c, d, e, f, g, h, ..] = ContentHash::of(&content).0;
-    JobId(u64::from_le_bytes([a, b, c, d, e, f, g, h]) | PART)
+    JobId(u64::from_le_bytes([a, b, c, d, e, f, g, h]) | PARTS)
 }
 
 /// Joins the results of the parts of a job to the result of the job; the first failure is that of the whole job.

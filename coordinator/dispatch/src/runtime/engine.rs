@@ -12,7 +12,7 @@ use super::{
     suspend::SuspendDetector,
     worker_control,
 };
-use crate::scheduler::{Command, Completed, ConnectedWorker, Input, Snapshot};
+use crate::scheduler::{Command, Completed, Input, Snapshot};
 use journal::event::{Asked, Event, JobReason};
 use journal::{Journal, WriterReport};
 use link::{CoordinatorEnd, LinkEvent};
@@ -21,6 +21,7 @@ use protocol::{
     job::Job,
     key::Lane,
     message::{FromWorker, ToWorker},
+    name::NO_CERTIFICATE,
     wire::{self, FrameKind, WireError},
 };
 use std::{
@@ -258,20 +259,19 @@ impl<L: CoordinatorEnd> Engine<L> {
 
     /// Answers a request from the control socket, draining workers as requested.
     fn ask(&mut self, question: &ControlRequest) -> ControlReply {
-        let mut crew = self
-            .coordination
-            .core()
-            .worker_statuses(self.begun.elapsed());
-        for (job, _) in crew.iter_mut().flat_map(|worker| &mut worker.jobs) {
-            *job = self.coordination.submitted_id(*job);
-        }
+        let core = self.coordination.core();
+        let mut workers = core.worker_reports(self.begun.elapsed());
         let own_host = rustix::system::uname();
-        let is_local = |worker: &ConnectedWorker| {
-            worker.host == own_host.nodename().to_string_lossy()
-                && (self.workers.as_ref()).is_some_and(|own| own.has_started(worker.process))
-        };
-        let (drains, reply) =
-            worker_control::answer(question, crew, |worker| self.link.owner(worker), is_local);
+        for (id, worker) in &mut workers {
+            for held in &mut worker.jobs {
+                held.job = self.coordination.submitted_id(JobId(held.job)).0;
+            }
+            let name = self.link.owner(*id);
+            worker.name = name.unwrap_or_else(|| NO_CERTIFICATE.to_owned());
+            worker.local = worker.host == own_host.nodename().to_string_lossy()
+                && (self.workers.as_ref()).is_some_and(|own| own.has_started(worker.pid));
+        }
+        let (drains, reply) = worker_control::answer(question, workers);
         for (worker, how) in drains {
             self.handle(Input::Drain { worker, how });
         }

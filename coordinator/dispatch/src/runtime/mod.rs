@@ -17,7 +17,7 @@ mod parts;
 mod suspend;
 mod worker_control;
 
-pub use crate::scheduler::{Completed, PAUSE_LIMIT, Policy, Snapshot, WorkerSnapshot};
+pub use crate::scheduler::{Completed, PAUSE_LIMIT, Policy, Snapshot};
 pub use bench::{
     BenchPlan, BenchResult, BenchWorkers, SilentPlan, SilentResult, SilentStage,
     SleepingJobsResult, bench, connect, keep_silent, processor_time, sleep_through,

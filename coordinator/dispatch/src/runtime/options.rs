@@ -1,7 +1,15 @@
 //! Options for opening a run.
+use super::PAUSE_LIMIT;
 use journal::event::RunHeader;
-use protocol::case::Case;
-use std::{path::PathBuf, time::Duration};
+use protocol::{
+    case::Case,
+    id::ContentHash,
+    wire::{self, WireError},
+};
+use std::{
+    path::{Path, PathBuf},
+    time::Duration,
+};
 
 /// Options for opening a run.
 #[derive(Clone, Debug)]
@@ -23,4 +31,34 @@ pub struct DispatchOptions {
     pub case: Case,
     /// Command, case and settings that determine the result of the run.
     pub header: RunHeader,
+}
+
+impl DispatchOptions {
+    /// Creates the options of a run of a case that only workers on this machine can join. `kind` names the command,
+    /// `settings` is the canonical JSON of what else determines the result.
+    ///
+    /// # Errors
+    /// [`WireError`] if the case cannot be encoded.
+    pub fn local(
+        run_dir: &Path,
+        local_workers: usize,
+        case: &Case,
+        kind: &str,
+        settings: String,
+    ) -> Result<Self, WireError> {
+        Ok(Self {
+            run_dir: run_dir.to_owned(),
+            listen: None,
+            insecure: false,
+            tls: None,
+            local_workers,
+            pause_limit: PAUSE_LIMIT,
+            case: case.clone(),
+            header: RunHeader {
+                kind: kind.to_owned(),
+                case: ContentHash::of(&wire::encode(case)?),
+                settings,
+            },
+        })
+    }
 }

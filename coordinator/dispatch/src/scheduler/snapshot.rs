@@ -1,14 +1,15 @@
 //! Snapshot of the state of a run, for progress lines and reports.
 use super::state::Core;
-use journal::event::Spent;
-use protocol::id::WorkerId;
+use journal::event::{Spent, WorkerAccount};
 use std::time::Duration;
 
 /// State of a run at one moment.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Snapshot {
-    /// Connected workers, by id.
-    pub workers: Vec<WorkerSnapshot>,
+    /// Connected workers, by id, with their use of slot time.
+    pub workers: Vec<WorkerAccount>,
+    /// Number of slots without a job.
+    pub idle: usize,
     /// Number of jobs waiting for a worker.
     pub queued: usize,
     /// Number of jobs held by workers.
@@ -34,25 +35,6 @@ pub struct Snapshot {
     pub paused: bool,
 }
 
-/// State of a worker at one moment.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct WorkerSnapshot {
-    /// Identifier of the worker.
-    pub id: WorkerId,
-    /// Host name of the worker's machine.
-    pub host: String,
-    /// Number of slots, that is, jobs computed at a time.
-    pub slots: u32,
-    /// Number of jobs that the worker is computing.
-    pub busy: u32,
-    /// Number of results delivered by the worker.
-    pub done: u64,
-    /// Number of attempts that failed on the worker.
-    pub failed: u64,
-    /// Slot time of the worker by use, since it joined.
-    pub spent: Spent,
-}
-
 #[expect(
     clippy::multiple_inherent_impl,
     reason = "nobody below needs to know what is shown of the state"
@@ -63,22 +45,17 @@ impl Core {
         let mut spent = self.counts.departed_slot_time;
         let mut clocks = self.clocks;
         clocks.advance(now);
+        let mut idle = 0;
         let mut workers = Vec::with_capacity(self.members.len());
         for (id, member) in &self.members {
-            let of_worker = member.spent(&clocks);
-            spent.add(&of_worker);
-            workers.push(WorkerSnapshot {
-                id: *id,
-                host: member.announcement.host.clone(),
-                slots: member.announcement.slots,
-                busy: u32::try_from(member.leases.len().min(member.slots())).unwrap_or(u32::MAX),
-                done: member.done,
-                failed: member.failed,
-                spent: of_worker,
-            });
+            let row = member.account_row(*id, &clocks);
+            spent.add(&row.spent);
+            idle += member.slots().saturating_sub(member.leases.len());
+            workers.push(row);
         }
         Snapshot {
             workers,
+            idle,
             queued: self.queue.len(),
             running: self.held_jobs(),
             done: self.finished.len() + self.storing.len(),

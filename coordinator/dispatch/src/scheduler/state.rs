@@ -5,13 +5,13 @@ use super::{
     job_set::JobSet,
     member::Member,
     notice::Notice,
-    part::is_part,
     policy::Policy,
     slot_time::Clocks,
     times::JobDurations,
     unclaimed_results::UnclaimedResults,
 };
 use journal::event::{Account, Event, Spent, WorkerAccount};
+use journal::job_range::is_part;
 use protocol::{
     case::Reproducibility,
     id::{ContentHash, JobId, RunId, WorkerId},

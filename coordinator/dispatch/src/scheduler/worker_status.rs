@@ -1,35 +1,65 @@
 //! Detailed list of a run's workers, built on request for control clients.
-use super::state::Core;
-use protocol::id::{JobId, WorkerId};
+use super::{member::Member, state::Core};
+use protocol::id::WorkerId;
+use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
-/// State of a connected worker at a moment.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ConnectedWorker {
-    /// Identifier of the worker.
-    pub id: WorkerId,
+/// State of a connected worker, as `workers list` prints it in a line.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct WorkerReport {
+    /// Name in the worker's certificate; `anyone` without key material.
+    pub name: String,
+    /// Identifier of the worker process, 16 hexadecimal digits.
+    pub id: String,
     /// Host name of the worker.
     pub host: String,
     /// Process id of the worker on its host.
-    pub process: u32,
-    /// Number of jobs that the worker can run simultaneously.
+    #[serde(default)]
+    pub pid: u32,
+    /// Whether the run started the worker on its own machine.
+    #[serde(default)]
+    pub local: bool,
+    /// Number of slots of the worker, i.e. of simultaneous simulations.
     pub slots: u32,
     /// Version and build profile of the worker program.
-    pub build: String,
-    /// Whether the worker has the case and has proved that its results agree with those of the run.
-    pub is_ready: bool,
-    /// Whether the worker is being drained and gets no new jobs.
-    pub is_drained: bool,
-    /// Jobs held by the worker, in the order of sending, with the time since each was sent.
-    pub jobs: Vec<(JobId, Duration)>,
-    /// Number of successful results that the worker has delivered.
+    pub version: String,
+    /// Phase of the worker: joining, working, draining or drained.
+    pub state: WorkerPhase,
+    /// Jobs held by the worker, those running in slots first.
+    pub jobs: Vec<HeldJob>,
+    /// Number of results that the worker has delivered.
     pub done: u64,
     /// Number of attempts that failed on the worker.
     pub failed: u64,
-    /// Time since the worker joined.
-    pub present: Duration,
-    /// Time since the worker's last message.
-    pub silent: Duration,
+    /// Results per minute that the worker has delivered since it joined.
+    pub per_minute: f64,
+    /// Time since the worker joined \[s\].
+    pub present_s: f64,
+    /// Time since the last message of the worker \[s\]; workers send one every second.
+    pub last_seen_s: f64,
+}
+
+/// Phase of a worker's participation in a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum WorkerPhase {
+    /// The worker is fetching the case and proving that its results equal those of the other workers.
+    Joining,
+    /// The worker takes jobs.
+    Working,
+    /// The worker finishes its jobs and gets no more.
+    Draining,
+    /// The worker holds no job and gets none.
+    Drained,
+}
+
+/// Job held by a worker.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct HeldJob {
+    /// Number of the job.
+    pub job: u64,
+    /// Time since the job was sent \[s\].
+    pub for_s: f64,
 }
 
 #[expect(
@@ -37,27 +67,42 @@ pub struct ConnectedWorker {
     reason = "nobody below needs to know what is shown of the state"
 )]
 impl Core {
-    /// Returns all connected workers, ordered by id.
-    pub fn worker_statuses(&self, now: Duration) -> Vec<ConnectedWorker> {
-        let hands = self.members.iter().map(|(id, member)| {
-            let leases = member.leases.iter();
-            ConnectedWorker {
-                id: *id,
-                host: member.announcement.host.clone(),
-                process: member.announcement.pid,
-                slots: member.announcement.slots,
-                build: member.announcement.build.clone(),
-                is_ready: member.ready,
-                is_drained: member.drained,
-                jobs: leases
-                    .map(|lease| (lease.attempt.job, now.saturating_sub(lease.sent)))
-                    .collect(),
-                done: member.done,
-                failed: member.failed,
-                present: now.saturating_sub(member.joined_at),
-                silent: now.saturating_sub(member.last_heard),
-            }
-        });
-        hands.collect()
+    /// Returns all connected workers, ordered by id; their names are empty and none is local, since the scheduler knows
+    /// neither certificates nor processes.
+    pub fn worker_reports(&self, now: Duration) -> Vec<(WorkerId, WorkerReport)> {
+        let members = self.members.iter();
+        members
+            .map(|(id, member)| (*id, report(*id, member, now)))
+            .collect()
+    }
+}
+
+fn report(id: WorkerId, member: &Member, now: Duration) -> WorkerReport {
+    let present_s = now.saturating_sub(member.joined_at).as_secs_f64();
+    let jobs = member.leases.iter().map(|lease| HeldJob {
+        job: lease.attempt.job.0,
+        for_s: now.saturating_sub(lease.sent).as_secs_f64(),
+    });
+    WorkerReport {
+        name: String::new(),
+        id: id.to_string(),
+        host: member.announcement.host.clone(),
+        pid: member.announcement.pid,
+        local: false,
+        slots: member.announcement.slots,
+        version: member.announcement.build.clone(),
+        state: match (member.drained, member.ready) {
+            (true, _) if member.leases.is_empty() => WorkerPhase::Drained,
+            (true, _) => WorkerPhase::Draining,
+            (false, true) => WorkerPhase::Working,
+            (false, false) => WorkerPhase::Joining,
+        },
+        jobs: jobs.collect(),
+        done: member.done,
+        failed: member.failed,
+        // of a worker that has just come nothing is known yet
+        per_minute: 60.0 * member.done as f64 / present_s.max(1.0),
+        present_s,
+        last_seen_s: now.saturating_sub(member.last_heard).as_secs_f64(),
     }
 }

@@ -18,11 +18,10 @@ pub use worker::{PROOF, Running, SimulatedWorker, cost, outcome};
 
 use crate::{
     runtime::Coordination,
-    scheduler::{
-        Command, Core, CoreOptions, Input, JobSet, Notice, Policy, Snapshot, StopReason, is_part,
-    },
+    scheduler::{Command, Core, CoreOptions, Input, JobSet, Notice, Policy, Snapshot, StopReason},
 };
 use ::journal::event::{Event, Finished};
+use ::journal::job_range::is_part;
 use event::ClusterEvent;
 use journal::{RUN, SimulatedJournal};
 use protocol::{

@@ -2,12 +2,12 @@
 use crate::chart::canvas::{TextStyle, render};
 use crate::chart::timeline;
 use crate::color::{BAND, BLUE, GREY, INK};
-use crate::data::{Calibration, WorkerUse};
+use crate::data::Calibration;
 use crate::document::{Block, Figure, Row, Section, Table, figures};
 use crate::number::{MISSING, count, duration, percent};
 use journal::account;
 use journal::account::RunAccount;
-use journal::event::Spent;
+use journal::event::{Spent, WorkerAccount};
 
 pub(super) fn calibration(calibration: &Calibration) -> Section {
     let mut blocks = Vec::new();
@@ -28,16 +28,16 @@ pub(super) fn calibration(calibration: &Calibration) -> Section {
 }
 
 /// Builds the table of the work done by each worker.
-pub(crate) fn workers(workers: &[WorkerUse]) -> Table {
+pub(crate) fn workers(workers: &[WorkerAccount]) -> Table {
     let rows = workers.iter().map(|worker| {
         Row::new(
-            worker.name.clone(),
+            worker.worker.to_string(),
             [
                 worker.host.clone(),
                 worker.slots.to_string(),
                 count(worker.done),
                 count(worker.failed),
-                duration(worker.busy_s),
+                duration(worker.busy_s()),
                 worker
                     .busy_share()
                     .map_or_else(|| MISSING.to_owned(), percent),
@@ -158,7 +158,7 @@ const BAR: f64 = 330.0;
 const MOST: usize = 40;
 
 /// Draws one bar per worker; `None` if the busy share of no worker is known.
-pub(crate) fn chart(workers: &[WorkerUse]) -> Option<Figure> {
+pub(crate) fn chart(workers: &[WorkerAccount]) -> Option<Figure> {
     // bars that are all empty would show nothing
     if workers.iter().all(|worker| worker.busy_share().is_none()) {
         return None;
@@ -174,7 +174,7 @@ pub(crate) fn chart(workers: &[WorkerUse]) -> Option<Figure> {
         for (index, worker) in shown.iter().enumerate() {
             let y = TOP + (index as f64 + 0.5) * ROW - 2.0;
             let name = TextStyle::new(11.0, INK).right();
-            canvas.text((LEFT - 10.0, y), &worker.name, name);
+            canvas.text((LEFT - 10.0, y), &worker.worker.to_string(), name);
             canvas.rectangle((LEFT, y - 6.0), (LEFT + BAR, y + 6.0), BAND);
             let share = worker.busy_share();
             let filled = BAR * share.unwrap_or(0.0).clamp(0.0, 1.0);

@@ -442,7 +442,7 @@ fn numbers_that_are_none_are_left_out() {
     calibration.history[7].fitness = f64::NAN;
     calibration.history[8].genes[2] = f64::NAN;
     calibration.history[9].genes.clear();
-    calibration.workers[0].present_s = 0.0;
+    calibration.workers[0].spent.connected_us = 0;
     let page = page_of(&calibration);
     check_page(&page);
     assert!(!words(&page).contains("NaN"));

@@ -1,7 +1,7 @@
 //! Synthesised case with results: machine geometry, plausible curves and a search log.
 use crate::geometry::{self, Pose};
 use journal::account::{JobCost, Presence, PresenceMark};
-use journal::event::Spent;
+use journal::event::{Spent, WorkerAccount};
 use protocol::pumping_unit::failure;
 use protocol::{
     case::{Case, Channel, ChannelRecord, Condition, Objective, Term, Unknown},
@@ -14,9 +14,7 @@ use protocol::{
     },
     unit::Unit,
 };
-use report::{
-    Calibration, ConditionResult, HistoryPoint, Individual, Origin, Run, SingleRun, WorkerUse,
-};
+use report::{Calibration, ConditionResult, HistoryPoint, Individual, Origin, Run, SingleRun};
 
 /// Number of crank-angle points per revolution in the sample simulation.
 const GRID: usize = 720;
@@ -554,14 +552,17 @@ pub(crate) fn calibration(evaluations: usize) -> Calibration {
         },
         history,
         workers: (0..3)
-            .map(|index| WorkerUse {
-                name: format!("worker {index}"),
+            .map(|index| WorkerAccount {
+                worker: WorkerId(index),
                 host: format!("node-{index:02}"),
                 slots: 2,
                 done: 1600 + 41 * index,
                 failed: index / 2,
-                busy_s: 520.0 - 60.0 * index as f64,
-                present_s: 300.0,
+                spent: Spent {
+                    connected_us: 600_000_000,
+                    useful_us: 520_000_000 - 60_000_000 * index,
+                    ..Spent::default()
+                },
             })
             .collect(),
         presence: (0..3).map(presence).collect(),

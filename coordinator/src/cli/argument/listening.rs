@@ -1,5 +1,6 @@
 //! Arguments that let workers on other machines connect.
 use clap::Args;
+use dispatch::runtime::DispatchOptions;
 use std::path::PathBuf;
 
 /// Access for workers on other machines; none by default.
@@ -16,4 +17,13 @@ pub(crate) struct RemoteAccess {
     /// results.
     #[arg(long, env = "HORSEHEAD_INSECURE")]
     pub(crate) insecure: bool,
+}
+
+impl RemoteAccess {
+    /// Lets workers on other machines join a run.
+    pub(crate) fn allow(self, options: &mut DispatchOptions) {
+        options.listen = self.listen;
+        options.tls = self.tls;
+        options.insecure = self.insecure;
+    }
 }

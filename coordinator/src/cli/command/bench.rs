@@ -1,18 +1,18 @@
 //! `horsehead bench`: measures the overhead of job dispatch with no-op jobs, without simulation.
 use crate::cli::{
-    argument::{
-        listening::RemoteAccess,
-        output::{Output, OutputChoice},
-    },
+    argument::output::{Output, OutputChoice},
     output::{problem::EXIT_CODES, terminal},
-    run::bus,
+    run::dispatcher,
 };
 use clap::{Args, Subcommand};
-use dispatch::runtime::{self, BenchPlan, BenchWorkers, SilentPlan, SilentResult, SilentStage};
+use dispatch::runtime::{
+    self, BenchPlan, BenchWorkers, DispatchOptions, SilentPlan, SilentResult, SilentStage,
+};
 use link::locator::Locator;
 use protocol::case::Case;
 use serde::Serialize;
 use std::path::PathBuf;
+use study::EvaluatorError;
 
 /// Measure the overhead of dispatching jobs.
 #[derive(Debug, Args)]
@@ -198,9 +198,9 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
             connect,
             sessions,
             tls,
-        } => {
-            bus::block_on(async { Ok(runtime::connect(connect, *sessions, tls.as_deref()).await?) })
-        }
+        } => dispatcher::block_on(async {
+            Ok(runtime::connect(connect, *sessions, tls.as_deref()).await?)
+        }),
         Benchmark::Silent {
             connect,
             connections,
@@ -211,7 +211,9 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
             } else {
                 SilentStage::Connection
             };
-            bus::block_on(async { Ok(runtime::keep_silent(connect, silence, *connections).await?) })
+            dispatcher::block_on(async {
+                Ok(runtime::keep_silent(connect, silence, *connections).await?)
+            })
         }
     }
 }
@@ -226,7 +228,7 @@ fn dispatch(
         let (jobs, workers) = (plan.jobs, plan.workers);
         terminal::tell(&format!("{jobs} no-op jobs on {workers} {of_what}"));
     }
-    let result = bus::block_on(measure(plan, tls))?;
+    let result = dispatcher::block_on(measure(plan, tls))?;
     let table = || {
         let mut text = format!(
             "{} workers   joined within {:.2} s\n\
@@ -271,21 +273,12 @@ fn silent_text(silent: &SilentResult) -> String {
 /// Measures the dispatcher with no-op jobs in a temporary run folder, over QUIC if key material is given.
 async fn measure(plan: BenchPlan, tls: Option<PathBuf>) -> anyhow::Result<BenchOutput> {
     let scratch = tempfile::tempdir()?;
-    let options = bus::Options {
-        run_dir: scratch.path().to_owned(),
-        network: RemoteAccess {
-            tls,
-            ..RemoteAccess::default()
-        },
-        local_workers: 0,
-        pause_limit: runtime::PAUSE_LIMIT,
-        kind: "bench".to_owned(),
-        settings: "{}".to_owned(),
-    };
-    let options = options.for_dispatch(&Case::default())?;
-    let result = runtime::bench(options, plan)
-        .await
-        .map_err(|error| bus::explain(&error))?;
+    let settings = "{}".to_owned();
+    let mut options =
+        DispatchOptions::local(scratch.path(), 0, &Case::default(), "bench", settings)?;
+    options.tls = tls;
+    let result = runtime::bench(options, plan).await;
+    let result = result.map_err(EvaluatorError::from)?;
     Ok(BenchOutput {
         crew: match plan.by {
             BenchWorkers::Processes => "processes",

@@ -213,15 +213,15 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
             run.folder.path().display()
         ));
     }
-    session.work(&run, async |bus, stop| {
+    session.work(&run, async |dispatch, stop| {
         let mut display = Display::new(run.case.objective_unit()).of_preset(&run.manifest.preset);
-        display.resumed(bus.recorded());
-        let found = calibrate(bus, &run, &mut display, stop).await;
+        display.resumed(dispatch.recorded());
+        let found = calibrate(dispatch, &run, &mut display, stop).await;
         display.clear();
         let best = found?.calibrated.best.genes;
-        let seen = identifiability(bus, &run, &best, &mut Silent, stop).await?;
+        let seen = identifiability(dispatch, &run, &best, &mut Silent, stop).await?;
         let estimates = seen.as_ref().map(|seen| seen.unknowns.clone());
-        bus.enter(&Entry::Estimated(estimates.unwrap_or_default()))?;
+        dispatch.enter(&Entry::Estimated(estimates.unwrap_or_default()))?;
         let file = seen.and_then(|seen| {
             let unknowns: Vec<&str> = seen.unknowns.iter().map(|own| own.name.as_str()).collect();
             let kind = case::kind::of(&run.case);

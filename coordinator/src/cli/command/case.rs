@@ -125,14 +125,14 @@ fn ask_worker(folder: &Path, overrides: &Overrides) -> anyhow::Result<Vec<String
             bare.effect_units.clear();
             bare.unknowns
                 .retain(|unknown| unknown.of_effect().is_none());
-            let library = with_temporary_run(&bare, "check", 1, async |bus, stop| {
-                study::library(bus, stop).await
+            let library = with_temporary_run(&bare, "check", 1, async |dispatch, stop| {
+                study::library(dispatch, stop).await
             })?;
             let document = document(folder, overrides)?;
             check_known(&document, &loaded.effects, &library)?;
         }
-        with_temporary_run(case, "check", 1, async |bus, stop| {
-            study::check_records(bus, case, &loaded.cycles, stop).await
+        with_temporary_run(case, "check", 1, async |dispatch, stop| {
+            study::check_records(dispatch, case, &loaded.cycles, stop).await
         })
     };
     asked().or_else(|error| match error.downcast_ref::<StudyError>() {

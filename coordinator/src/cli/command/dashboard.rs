@@ -5,7 +5,7 @@ use crate::cli::{
         problem::{EXIT_CODES, Problem},
         terminal,
     },
-    run::{bus, folder::RunFolder, interrupt},
+    run::{dispatcher, folder::RunFolder, interrupt},
 };
 use clap::Args;
 use dashboard::{Pages, serve};
@@ -111,7 +111,7 @@ fn block_on(
     pages: Arc<impl Pages>,
     end: Option<Stop>,
 ) -> anyhow::Result<()> {
-    bus::block_on(async {
+    dispatcher::block_on(async {
         let mut stop = interrupt::listen();
         listener.set_nonblocking(true)?;
         let listener = tokio::net::TcpListener::from_std(listener)?;

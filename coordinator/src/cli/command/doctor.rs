@@ -6,7 +6,7 @@ use crate::cli::{
         output::OutputChoice,
     },
     output::{problem::EXIT_CODES, terminal},
-    run::bus,
+    run::dispatcher,
 };
 use clap::Args;
 use dispatch::runtime::{local_socket, locate::worker_program};
@@ -88,7 +88,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if checks.iter().all(|check| check.healthy) {
         checks.extend(match side {
             "coordinator" | "machine" => listen(at, tls),
-            _ => bus::block_on(async { Ok(dial(at, tls).await) })?,
+            _ => dispatcher::block_on(async { Ok(dial(at, tls).await) })?,
         });
     }
     let object = DoctorOutput {

@@ -76,9 +76,9 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     };
     let manifest = target.manifest(seed, settings)?;
     let run = Run::begin(&path, manifest, target.loaded.case.clone())?;
-    session.work(&run, async |bus, stop| {
+    session.work(&run, async |dispatch, stop| {
         let mut display = StageDisplay::new();
-        let found = identify(bus, &run.manifest, &target.loaded, &mut display, stop).await;
+        let found = identify(dispatch, &run.manifest, &target.loaded, &mut display, stop).await;
         display.clear();
         found
     })?;

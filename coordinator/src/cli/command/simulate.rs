@@ -8,7 +8,7 @@ use crate::{
             output::{Output, OutputChoice},
         },
         output::{files::check_out, object::simulation::simulation, problem::EXIT_CODES, terminal},
-        run::{bus, command_line::command_line, temporary::compare_once},
+        run::{command_line::command_line, hash, manifest, temporary::compare_once},
     },
     kind,
 };
@@ -85,10 +85,10 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let run = SingleRun {
         case: case.clone(),
         origin: Origin {
-            program: bus::PROGRAM.to_owned(),
+            program: manifest::PROGRAM.to_owned(),
             command: command_line(),
             run: format!("{} {}", case.name, case.conditions[condition].name),
-            case_hash: bus::case_hash(case)?,
+            case_hash: hash::case_hash(case)?,
             measured_name: loaded.measured.clone(),
             preset: None,
             seed: None,
@@ -138,6 +138,7 @@ fn ended(verdict: &Verdict) -> anyhow::Result<()> {
     Err(EvaluatorError {
         message: format!("the simulation {}", words::verdict(verdict)),
         help: Some(help.to_owned()),
+        may_go_on: false,
     }
     .into())
 }

@@ -7,9 +7,9 @@ use crate::cli::{
     },
     output::problem::Problem,
     run::{
-        bus,
         calibration::Calibration,
         folder::RunFolder,
+        hash, manifest,
         manifest::{CALIBRATE, DIAGNOSE, FORMAT, Manifest, Start},
         name::{RunName, belongs_to_another},
         opened::Run,
@@ -35,7 +35,7 @@ fn manifest(case: &Case, seed: u64) -> Manifest {
     Manifest {
         kind: CALIBRATE.to_owned(),
         format: FORMAT,
-        program: bus::PROGRAM.to_owned(),
+        program: manifest::PROGRAM.to_owned(),
         command: "horsehead calibrate X".to_owned(),
         preset: "quick".to_owned(),
         seed,
@@ -320,8 +320,8 @@ fn a_run_folder_goes_on_with_the_same_run_and_refuses_another() {
     let kept = Calibration::open(&path).unwrap().case;
     assert_eq!(kept, case);
     assert_eq!(
-        bus::case_hash(&kept).unwrap(),
-        bus::case_hash(&case).unwrap()
+        hash::case_hash(&kept).unwrap(),
+        hash::case_hash(&case).unwrap()
     );
 }
 

@@ -6,7 +6,7 @@ use super::{
     state::{RunState, SharedState},
 };
 use crate::cli::run::{
-    bus,
+    dispatcher,
     folder::{MANIFEST, RESULT, RunFolder},
     kind::AnyRun,
     manifest::{CALIBRATE, DIAGNOSE, IDENTIFY},
@@ -242,7 +242,7 @@ impl Shared {
             has_begun: false,
         };
         let mut evaluator = FollowingEvaluator::new(&self.path.join(journal::FILE), &mut observer);
-        bus::block_on(async { run.replay(&mut evaluator, &mut watch, &mut stop).await })?;
+        dispatcher::block_on(async { run.replay(&mut evaluator, &mut watch, &mut stop).await })?;
         run.report(self.wall_s()?)
     }
 

@@ -2,7 +2,7 @@
 //! known.
 use super::state::{RunState, WorkerState};
 use crate::cli::{
-    output::calibration::{history_point, worker_use},
+    output::calibration::history_point,
     run::{calibration::Calibration, kind::AnyRun},
 };
 use discrepancy::laboratory::Finding;
@@ -304,7 +304,7 @@ fn calibration(run: &Calibration, state: &RunState, compared: ComparedRuns<'_>) 
             .values()
             .map(|entry| history_point(entry, state.costs.get(&entry.id).copied()))
             .collect(),
-        workers: account.workers.iter().map(worker_use).collect(),
+        workers: account.workers,
         presence: account.presence,
         spent: account.spent,
         wall_s: running_s(state),

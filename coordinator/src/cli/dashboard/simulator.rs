@@ -1,5 +1,5 @@
 //! Simulation of individuals for the dashboard, by a worker process of its own in a temporary folder.
-use crate::cli::run::{bus, temporary::with_temporary_run};
+use crate::cli::run::{hash, temporary::with_temporary_run};
 use protocol::{case::Case, id::ContentHash};
 use report::Run;
 use std::{
@@ -46,7 +46,7 @@ impl HashedCase {
     pub(super) fn new(case: &Case) -> anyhow::Result<Arc<Self>> {
         Ok(Arc::new(Self {
             case: case.clone(),
-            hash: bus::content_hash(case)?,
+            hash: hash::content_hash(case)?,
         }))
     }
 
@@ -210,7 +210,7 @@ fn answer(asked: &mpsc::Receiver<Message>, shared: &Mutex<Shared>) {
             continue;
         }
         let mut waiting = Some(first);
-        let done = with_temporary_run(&case.case, "dashboard", 1, async |bus, stop| {
+        let done = with_temporary_run(&case.case, "dashboard", 1, async |dispatch, stop| {
             let mut number = 0;
             while number < MOST_IN_A_RUN {
                 let request = match waiting.take() {
@@ -234,7 +234,7 @@ fn answer(asked: &mpsc::Receiver<Message>, shared: &Mutex<Shared>) {
                 }
                 let wanted = wanted(&case.case, number, &request.genes);
                 number += 1;
-                let result = match study::compare(bus, &case.case, &wanted, stop).await {
+                let result = match study::compare(dispatch, &case.case, &wanted, stop).await {
                     Ok(compared) => Ok(Arc::new(runs(&compared))),
                     Err(error @ StudyError::Interrupted) => return Err(error),
                     Err(error) => Err(error.to_string()),

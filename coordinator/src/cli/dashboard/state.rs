@@ -11,7 +11,7 @@ use std::{
     collections::BTreeMap,
     sync::{Arc, Mutex, MutexGuard, PoisonError},
 };
-use study::{FollowObserver, LogEntry, ProgressView, StageView, Watch, WorkersSnapshot};
+use study::{FollowObserver, LogEntry, ProgressView, Snapshot, StageView, Watch};
 
 /// Worker of a run, as far as the journal tells.
 #[derive(Clone, Debug, Default)]
@@ -180,7 +180,7 @@ impl FollowObserver for SharedState {
 }
 
 impl Watch<ProgressView> for SharedState {
-    fn progress(&mut self, view: &ProgressView, _: &dyn Fn() -> WorkersSnapshot) {
+    fn progress(&mut self, view: &ProgressView, _: &dyn Fn() -> Snapshot) {
         self.change(|state| state.progress = view.clone());
     }
 
@@ -194,7 +194,7 @@ impl Watch<ProgressView> for SharedState {
 }
 
 impl Watch<StageView> for SharedState {
-    fn progress(&mut self, view: &StageView, _: &dyn Fn() -> WorkersSnapshot) {
+    fn progress(&mut self, view: &StageView, _: &dyn Fn() -> Snapshot) {
         self.change(|state| state.stage(view));
     }
 

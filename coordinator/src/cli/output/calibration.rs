@@ -17,12 +17,11 @@ use crate::cli::{
 use case::CaseEffect;
 use discrepancy::identify::UnknownEstimate;
 use journal::account::JobCost;
-use journal::event::WorkerAccount;
 use protocol::{
     case::WeightedCondition,
     job::{Counters, Evaluation, Verdict},
 };
-use report::{self, Calibration, ConditionResult, HistoryPoint, Individual, RivalFit, WorkerUse};
+use report::{self, Calibration, ConditionResult, HistoryPoint, Individual, RivalFit};
 use search::strategy::{
     Finish,
     family::{Rival, rivals},
@@ -211,7 +210,7 @@ pub(crate) fn calibration(
             genes: best.genes.clone(),
         },
         history: history.collect(),
-        workers: account.workers.iter().map(worker_use).collect(),
+        workers: account.workers.clone(),
         presence: account.presence.clone(),
         spent: account.spent,
         wall_s,
@@ -255,19 +254,5 @@ pub(crate) fn history_point(entry: &LogEntry, cost: Option<JobCost>) -> HistoryP
         complete: entry.ending == study::EvaluationOutcome::Complete,
         failure: entry.ending.failure(),
         cost,
-    }
-}
-
-/// Converts the account of a worker to the report's type.
-pub(crate) fn worker_use(worker: &WorkerAccount) -> WorkerUse {
-    let seconds = |us: u64| us as f64 / 1e6;
-    WorkerUse {
-        name: worker.worker.to_string(),
-        host: worker.host.clone(),
-        slots: worker.slots,
-        done: worker.done,
-        failed: worker.failed,
-        busy_s: seconds(worker.spent.useful_us),
-        present_s: seconds(worker.spent.connected_us) / f64::from(worker.slots.max(1)),
     }
 }

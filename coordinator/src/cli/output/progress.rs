@@ -9,7 +9,7 @@ use std::{
     io::{self, IsTerminal as _},
     time::{Duration, Instant},
 };
-use study::{ProgressView, StageView, View, Watch, WorkersSnapshot};
+use study::{ProgressView, Snapshot, StageView, View, Watch};
 
 /// Maximum time between two progress lines if there is no terminal.
 const LINE_INTERVAL: Duration = Duration::from_secs(10);
@@ -47,7 +47,7 @@ impl Display {
     }
 
     /// Tells the user once that more slots are connected than the search fills.
-    fn tell_surplus(&mut self, crew: &WorkersSnapshot) {
+    fn tell_surplus(&mut self, crew: &Snapshot) {
         let slots: u64 = crew.workers.iter().map(|own| u64::from(own.slots)).sum();
         if let Some(preset) = self.preset
             && let Some(note) = surplus(preset, slots)
@@ -120,7 +120,7 @@ impl Watch<StageView> for StageDisplay {
         terminal::note(notes);
     }
 
-    fn progress(&mut self, view: &StageView, crew: &dyn Fn() -> WorkersSnapshot) {
+    fn progress(&mut self, view: &StageView, crew: &dyn Fn() -> Snapshot) {
         let StageView {
             stage, done, open, ..
         } = *view;
@@ -189,7 +189,7 @@ impl<V: View> Watch<V> for Silent {
         terminal::note(notes);
     }
 
-    fn progress(&mut self, _view: &V, _crew: &dyn Fn() -> WorkersSnapshot) {}
+    fn progress(&mut self, _view: &V, _crew: &dyn Fn() -> Snapshot) {}
 }
 
 impl Watch<ProgressView> for Display {
@@ -201,7 +201,7 @@ impl Watch<ProgressView> for Display {
         self.recorded = recorded as u64;
     }
 
-    fn progress(&mut self, view: &ProgressView, crew: &dyn Fn() -> WorkersSnapshot) {
+    fn progress(&mut self, view: &ProgressView, crew: &dyn Fn() -> Snapshot) {
         // what is only read again needs neither workers nor lines
         let reading = view.completed == view.replayed && view.completed < self.recorded;
         if reading && view.completed < view.expected {
@@ -251,7 +251,7 @@ fn surplus(preset: &Preset, slots: u64) -> Option<String> {
 }
 
 /// Formats the progress line: generation or stage, best objective, failures, workers, rate, remaining time.
-fn describe(view: &ProgressView, (counted, unit): (&str, &str), crew: &WorkersSnapshot) -> String {
+fn describe(view: &ProgressView, (counted, unit): (&str, &str), crew: &Snapshot) -> String {
     let mut parts = Vec::new();
     // before the first is asked for there is nothing to count, and one of one says nothing
     if view.generations > 1 {
@@ -284,9 +284,8 @@ fn describe(view: &ProgressView, (counted, unit): (&str, &str), crew: &WorkersSn
 
 /// Describes the connected workers. Before the first job is dispatched, workers fetch the case and build the
 /// model.
-fn at_work(crew: &WorkersSnapshot) -> String {
-    let attached = crew.workers.iter().filter(|worker| worker.attached).count();
-    let workers = match attached {
+fn at_work(crew: &Snapshot) -> String {
+    let workers = match crew.workers.len() {
         0 => return "waiting for workers".to_owned(),
         1 => "1 worker".to_owned(),
         several => format!("{several} workers"),
@@ -328,7 +327,8 @@ fn clock(time: Duration) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use study::WorkerStatus;
+    use journal::event::WorkerAccount;
+    use protocol::id::WorkerId;
 
     #[test]
     fn more_slots_than_a_preset_fills_are_noted_with_the_presets_that_fill_them() {
@@ -355,14 +355,18 @@ mod tests {
             best: Some(0.31239),
         };
         let words = ("generation or stage", " N^2");
-        let mut crew = WorkersSnapshot::default();
+        let mut crew = Snapshot::default();
         assert_eq!(
             describe(&ProgressView::default(), words, &crew),
             "waiting for workers"
         );
-        crew.workers.push(WorkerStatus {
-            attached: true,
-            ..WorkerStatus::default()
+        crew.workers.push(WorkerAccount {
+            worker: WorkerId(1),
+            host: "node-1".to_owned(),
+            slots: 1,
+            done: 0,
+            failed: 0,
+            spent: Spent::default(),
         });
         assert_eq!(
             describe(&ProgressView::default(), words, &crew),

@@ -1,7 +1,7 @@
 //! Manifest of a run: the inputs that determine its result, and the command that resumes it.
 use super::{
-    bus,
     command_line::{command_line, quote, quote_path},
+    hash,
 };
 use case::{CaseEffect, GeneFile, Loaded, Note};
 use protocol::case::Case;
@@ -11,6 +11,9 @@ use search::{
 };
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use std::path::{Path, PathBuf};
+
+/// Name and version of this program, as recorded in runs and exports.
+pub(crate) const PROGRAM: &str = concat!("horsehead ", env!("CARGO_PKG_VERSION"));
 
 /// Format version of the manifest and case files in a run folder.
 pub(crate) const FORMAT: u32 = 1;
@@ -144,7 +147,7 @@ pub(crate) struct FirstTable {
 impl FirstTable {
     /// Returns the word that names the individuals in a run's default name.
     pub(crate) fn word(&self) -> anyhow::Result<String> {
-        Ok(format!("start-{}", bus::short_hash(&self.individuals)?))
+        Ok(format!("start-{}", hash::short_hash(&self.individuals)?))
     }
 }
 
@@ -163,7 +166,7 @@ pub(crate) struct Start {
 impl Start {
     /// Returns the word that names the start in a run's default name.
     pub(crate) fn word(&self) -> anyhow::Result<String> {
-        Ok(format!("genes-{}", bus::short_hash(&self.genes)?))
+        Ok(format!("genes-{}", hash::short_hash(&self.genes)?))
     }
 
     /// Reads a gene file and gives the case the effects of the file, with a note on each that the file adds, changes or
@@ -267,7 +270,7 @@ impl<S: RunIdentity> Manifest<S> {
         Ok(Self {
             kind: S::KIND.to_owned(),
             format: FORMAT,
-            program: bus::PROGRAM.to_owned(),
+            program: PROGRAM.to_owned(),
             command: command_line(),
             preset: String::new(),
             set: Vec::new(),

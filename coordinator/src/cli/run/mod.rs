@@ -1,14 +1,15 @@
 //! Runs: run folders, manifests, and functions that open and resume runs and read their results.
-pub(crate) mod bus;
 pub(super) mod calibration;
 pub(super) mod command_line;
 pub(super) mod diagnosis;
+pub(crate) mod dispatcher;
 pub(super) mod folder;
+pub(crate) mod hash;
 pub(super) mod identification;
 pub(super) mod interrupt;
 pub(super) mod kind;
 pub(super) mod launch;
-pub(super) mod manifest;
+pub(crate) mod manifest;
 pub(super) mod name;
 pub(super) mod opened;
 pub(super) mod orthogonal;

@@ -1,5 +1,5 @@
 //! Default names of run folders: the case's folder, the command, and what distinguishes the run.
-use super::{bus::short_hash, folder::MANIFEST};
+use super::{folder::MANIFEST, hash::short_hash};
 use protocol::case::Case;
 use std::{
     fs,

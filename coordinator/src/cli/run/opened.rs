@@ -1,7 +1,7 @@
 //! Run with its folder, manifest and case: opening, resuming and comparing runs.
 use super::{
-    bus,
     folder::{CASE, MANIFEST, RunFolder},
+    hash,
     manifest::{Manifest, RunIdentity},
 };
 use crate::cli::output::problem::Problem;
@@ -125,7 +125,7 @@ impl<S: RunIdentity> Run<S> {
             program: manifest.program.clone(),
             command: manifest.command.clone(),
             run: self.folder.path().display().to_string(),
-            case_hash: bus::case_hash(&self.case)?,
+            case_hash: hash::case_hash(&self.case)?,
             measured_name: manifest.measured.clone(),
             preset: (!manifest.preset.is_empty()).then(|| manifest.preset.clone()),
             seed: Some(manifest.seed),
@@ -233,7 +233,7 @@ impl<S: RunIdentity> Run<S> {
 
     /// Removes from a loaded case the effects that this diagnosis has added to it since it was begun.
     pub(crate) fn as_begun(&self, loaded: Loaded) -> anyhow::Result<Loaded> {
-        Ok(loaded.without_effects_from(&bus::case_hash(&self.case)?))
+        Ok(loaded.without_effects_from(&hash::case_hash(&self.case)?))
     }
 }
 

@@ -1,23 +1,23 @@
 //! Scaling measurement over numbers of worker slots: rows of the scaling table are measured one after
 //! another, and each is stored in the run folder as soon as it is complete.
-use super::{
-    bus::{self, Bus, Options},
-    manifest::RunIdentity,
-    opened::Run,
-};
+use super::{dispatcher, manifest::RunIdentity, opened::Run};
 use crate::cli::{
-    argument::{listening::RemoteAccess, settings},
+    argument::settings,
     output::{problem::Problem, terminal},
 };
 use anyhow::Context as _;
-use dispatch::runtime::{self, BenchPlan, BenchWorkers, processor_time, sleep_through};
+use dispatch::runtime::{
+    self, BenchPlan, BenchWorkers, DispatchOptions, processor_time, sleep_through,
+};
 use dispatch::simulated::{SimulatedDerivatives, SimulatedSearch as JobSource};
 use journal::account;
 use journal::event::{JobReason, Spent};
+use journal::job_range::DERIVATIVE_COSTS;
 use protocol::{
     case::Case,
     id::JobId,
     job::{Column, Individual, Job, Reply, SimulateSpec},
+    wire::WireError,
 };
 use search::{
     space::Space,
@@ -34,7 +34,7 @@ use std::{
 use study::scaling::{
     Overheads, ScalingResult, ScalingRow, Shares, SlotMode, SyntheticObjective, project,
 };
-use study::{Evaluator, ProgressView, Search, Stop, Sweep, Watch, score_all};
+use study::{Evaluator, EvaluatorError, ProgressView, Search, Stop, Sweep, Watch, score_all};
 use support::quantile;
 
 /// Benchmark of the coordinator's cost per result: number of sessions, number of jobs, and bytes per result
@@ -47,9 +47,6 @@ const MIN_EVALUATIONS_PER_SLOT: u64 = 8;
 const MAX_WARM_UP_ROUNDS: u32 = 200;
 /// Minimum number of simulations of each kind from which the cost of derivatives is measured.
 const DERIVATIVE_SAMPLES: u64 = 3;
-/// Number of the first job that measures the cost of derivatives, above the numbers that jobs get by their
-/// content.
-const DERIVATIVE_JOBS: u64 = 1 << 48;
 
 /// Search to measure: the name of a preset, and the number of individuals per generation if that is chosen.
 pub(crate) type Searched<'a> = (&'a str, Option<u64>);
@@ -292,26 +289,26 @@ impl ScalingRun<'_> {
             fs::remove_dir_all(&journal).with_context(|| journal.display().to_string())?;
         }
         let count = usize::try_from(slots)?;
-        let options = Options {
-            run_dir: journal.clone(),
-            network: RemoteAccess::default(),
-            local_workers: count,
-            pause_limit: runtime::PAUSE_LIMIT,
-            kind: ScalingSettings::KIND.to_owned(),
-            settings: String::new(),
-        };
-        let mut bus = Bus::open(options, case).await?;
+        let kind = ScalingSettings::KIND;
+        let options = DispatchOptions::local(&journal, count, case, kind, String::new())?;
+        let mut dispatch = dispatcher::open(options).await?;
         for round in 0..MAX_WARM_UP_ROUNDS {
-            self.warm_up(&mut bus, (round, slots), watch, stop).await?;
-            if bus.workers_status().workers.len() >= count {
+            self.warm_up(&mut dispatch, (round, slots), watch, stop)
+                .await?;
+            if dispatch.snapshot().workers.len() >= count {
                 break;
             }
         }
-        let derivatives_over_plain = self.derivatives_over_plain(&mut bus, slots).await?;
+        let derivatives_over_plain = self.derivatives_over_plain(&mut dispatch, slots).await?;
         let row = self
-            .time_search(&mut bus, (SlotMode::Computed, search, slots), watch, stop)
+            .time_search(
+                &mut dispatch,
+                (SlotMode::Computed, search, slots),
+                watch,
+                stop,
+            )
             .await?;
-        bus.close().await?;
+        dispatch.close().await.map_err(EvaluatorError::from)?;
         let (_, costs) = account::read_with_costs(&journal.join(journal::FILE))?;
         let times = costs.values().map(|cost| cost.wall_s).collect();
         Ok(Measured::new(row, times, derivatives_over_plain))
@@ -362,7 +359,7 @@ impl ScalingRun<'_> {
                     columns: columns.clone(),
                     ..SimulateSpec::new(individual, reply)
                 });
-                let id = DERIVATIVE_JOBS + kind as u64 * count + index;
+                let id = DERIVATIVE_COSTS + kind as u64 * count + index;
                 evaluator.submit(JobId(id), job, JobReason::outside_search("derivatives"))?;
             }
             for _ in 0..count {
@@ -390,14 +387,11 @@ impl ScalingRun<'_> {
             seed: self.run.manifest.seed,
             evaluations: Some(self.run.manifest.settings.evaluations),
         }];
-        let (before, begun, processor) = (
-            evaluator.workers_status().spent,
-            Instant::now(),
-            processor_time(),
-        );
+        let (before, begun, processor) =
+            (evaluator.snapshot().spent, Instant::now(), processor_time());
         let mut sweep = Sweep::new(&self.run.case, self.space);
         let found = sweep.run(evaluator, &list, watch, stop).await?;
-        let (wall, after) = (begun.elapsed(), evaluator.workers_status().spent);
+        let (wall, after) = (begun.elapsed(), evaluator.snapshot().spent);
         let processor = processor_time().saturating_sub(processor);
         let evaluations = found.first().map_or(0, |found| found.evaluations);
         Ok(row(
@@ -422,7 +416,7 @@ impl ScalingRun<'_> {
         let scratch = tempfile::tempdir()?;
         let options = empty_run(scratch.path())?;
         let result = runtime::bench(options, plan).await;
-        let result = result.map_err(|error| bus::explain(&error))?;
+        let result = result.map_err(EvaluatorError::from)?;
         Ok(Overheads {
             simulation_s: alone.simulation_s,
             simulation_quantiles_s: alone.simulation_quantiles_s.clone(),
@@ -465,7 +459,7 @@ impl ScalingRun<'_> {
         let scratch = tempfile::tempdir()?;
         let options = empty_run(scratch.path())?;
         let slept = sleep_through(options, usize::try_from(slots)?, &mut source, &takes).await;
-        let slept = slept.map_err(|error| bus::explain(&error))?;
+        let slept = slept.map_err(EvaluatorError::from)?;
         if slept.slots < usize::try_from(slots)? {
             return Err(Problem {
                 message: format!("only {} of {slots} sessions joined", slept.slots),
@@ -486,16 +480,8 @@ impl ScalingRun<'_> {
 }
 
 /// Returns the dispatcher options of a run of empty jobs in a temporary folder.
-fn empty_run(folder: &std::path::Path) -> anyhow::Result<runtime::DispatchOptions> {
-    let options = Options {
-        run_dir: folder.to_owned(),
-        network: RemoteAccess::default(),
-        local_workers: 0,
-        pause_limit: runtime::PAUSE_LIMIT,
-        kind: "bench".to_owned(),
-        settings: "{}".to_owned(),
-    };
-    options.for_dispatch(&Case::default())
+fn empty_run(folder: &std::path::Path) -> Result<DispatchOptions, WireError> {
+    DispatchOptions::local(folder, 0, &Case::default(), "bench", "{}".to_owned())
 }
 
 /// Builds a row of the scaling table from measured values; `(wall, processor)` are the wall time and the

@@ -5,7 +5,7 @@
 //! number leaves out are ended. Every search numbers its jobs apart from the others, so that none takes the
 //! results of another.
 use super::{
-    bus::{Bus, Options},
+    dispatcher,
     launch::Launch,
     manifest::RunIdentity as _,
     scaling::{Measured, ScalingRun, ScalingSettings, Searched, file},
@@ -16,10 +16,11 @@ use crate::cli::{
 };
 use anyhow::Context as _;
 use dispatch::runtime::{
-    self,
+    Dispatch, DispatchOptions,
     control::{messages::ControlRequest, send_request},
 };
 use journal::event::JobReason;
+use journal::job_range::SEARCH_BITS;
 use protocol::{id::JobId, job::Job};
 use std::{
     collections::VecDeque,
@@ -27,7 +28,7 @@ use std::{
     time::{Duration, Instant},
 };
 use study::{
-    Completed, Evaluator, EvaluatorError, ProgressView, Stop, Watch, WorkersSnapshot, or_stop,
+    Completed, Evaluator, EvaluatorError, ProgressView, Snapshot, Stop, Watch, or_stop,
     scaling::SlotMode,
 };
 
@@ -37,8 +38,6 @@ const JOURNAL: &str = "remote";
 const POLL: Duration = Duration::from_millis(100);
 /// Time without a further worker after which a measurement goes on with the launched workers that are there.
 const PATIENCE: Duration = Duration::from_mins(1);
-/// Bits of a job number within its search; the bits above number the searches.
-const NUMBER_BITS: u32 = 50;
 
 /// Measures every search on the numbers of remote workers that the settings state, as far as its rows are not stored
 /// in the run folder.
@@ -95,7 +94,7 @@ pub(crate) async fn measure(
 
 /// Open run with the remote workers on which searches are measured.
 struct RemoteWorkers {
-    bus: Bus,
+    dispatch: Dispatch,
     launch: Option<Launch>,
     journal: PathBuf,
     derivatives_over_plain: f64,
@@ -116,21 +115,17 @@ impl RemoteWorkers {
         })?;
         let mut launch = Launch::prepare(remote, scale.run.folder.path())?;
         let network = launch.as_ref().map_or(&remote.door, |own| &own.endpoint);
-        let options = Options {
-            run_dir: journal.clone(),
-            network: network.clone(),
-            local_workers: 0,
-            pause_limit: runtime::PAUSE_LIMIT,
-            kind: ScalingSettings::KIND.to_owned(),
-            settings: String::new(),
-        };
-        let bus = Bus::open(options, &scale.run.case).await?;
+        let kind = ScalingSettings::KIND;
+        let mut options =
+            DispatchOptions::local(&journal, 0, &scale.run.case, kind, String::new())?;
+        network.clone().allow(&mut options);
+        let dispatch = dispatcher::open(options).await?;
         let launched = match &mut launch {
             Some(launch) => launch.up(),
             None => Ok(()),
         };
         let mut own = Self {
-            bus,
+            dispatch,
             launch,
             journal,
             derivatives_over_plain: 1.0,
@@ -138,9 +133,13 @@ impl RemoteWorkers {
         let ready = async {
             launched?;
             own.join(most, stop).await?;
-            let slots = slots(&own.bus.workers_status());
-            scale.warm_up(&mut own.bus, (0, slots), watch, stop).await?;
-            own.derivatives_over_plain = scale.derivatives_over_plain(&mut own.bus, slots).await?;
+            let slots = slots(&own.dispatch.snapshot());
+            scale
+                .warm_up(&mut own.dispatch, (0, slots), watch, stop)
+                .await?;
+            own.derivatives_over_plain = scale
+                .derivatives_over_plain(&mut own.dispatch, slots)
+                .await?;
             Ok(())
         };
         let ready: anyhow::Result<()> = ready.await;
@@ -156,7 +155,7 @@ impl RemoteWorkers {
     async fn join(&self, wanted: u64, stop: &mut Stop) -> anyhow::Result<()> {
         let mut last = (u64::MAX, Instant::now());
         loop {
-            let joined = self.bus.workers_status().workers.len() as u64;
+            let joined = self.dispatch.snapshot().workers.len() as u64;
             if joined >= wanted {
                 return Ok(());
             }
@@ -184,11 +183,11 @@ impl RemoteWorkers {
         stop: &mut Stop,
     ) -> anyhow::Result<Measured> {
         self.keep(count).await?;
-        let slots = slots(&self.bus.workers_status());
+        let slots = slots(&self.dispatch.snapshot());
         anyhow::ensure!(slots > 0, "no remote worker is left");
         let mut own = NumberedSearch {
-            bus: &mut self.bus,
-            first: index << NUMBER_BITS,
+            dispatch: &mut self.dispatch,
+            first: index << SEARCH_BITS,
             times: Vec::new(),
         };
         let how = (SlotMode::Remote, search, slots);
@@ -199,8 +198,8 @@ impl RemoteWorkers {
 
     /// Ends all but the first `count` workers.
     async fn keep(&self, count: u64) -> anyhow::Result<()> {
-        let present = self.bus.workers_status().workers;
-        let names = present.into_iter().map(|worker| worker.name);
+        let present = self.dispatch.snapshot().workers;
+        let names = present.into_iter().map(|row| row.worker.to_string());
         let surplus = names.skip(usize::try_from(count).unwrap_or(usize::MAX));
         let surplus: VecDeque<String> = surplus.collect();
         if surplus.is_empty() {
@@ -214,7 +213,7 @@ impl RemoteWorkers {
         let journal = self.journal.clone();
         tokio::task::spawn_blocking(move || send_request(&journal, &request)).await??;
         let begun = Instant::now();
-        while self.bus.workers_status().workers.len() as u64 > count {
+        while self.dispatch.snapshot().workers.len() as u64 > count {
             anyhow::ensure!(
                 begun.elapsed() < PATIENCE,
                 "a worker did not end when asked"
@@ -226,42 +225,44 @@ impl RemoteWorkers {
 
     /// Ends the run and the launched workers.
     async fn close(self) -> anyhow::Result<()> {
-        let closed = self.bus.close().await;
+        let closed = self.dispatch.close().await;
         if let Some(launch) = self.launch {
             tokio::task::spawn_blocking(move || launch.down()).await?;
         }
-        closed
+        closed.map_err(EvaluatorError::from)?;
+        Ok(())
     }
 }
 
-fn slots(status: &WorkersSnapshot) -> u64 {
+fn slots(status: &Snapshot) -> u64 {
     let workers = status.workers.iter();
     workers.map(|worker| u64::from(worker.slots)).sum()
 }
 
 /// Evaluator that numbers the jobs of one search apart from those of the others, and keeps their computing times.
 struct NumberedSearch<'a> {
-    bus: &'a mut Bus,
+    dispatch: &'a mut Dispatch,
     first: u64,
     times: Vec<f64>,
 }
 
 impl Evaluator for NumberedSearch<'_> {
     fn submit(&mut self, id: JobId, job: Job, reason: JobReason) -> Result<(), EvaluatorError> {
-        self.bus.submit(JobId(self.first + id.0), job, reason)
+        let id = JobId(self.first + id.0);
+        Ok(self.dispatch.submit(id, job, reason)?)
     }
 
     fn anticipate(&mut self, jobs: Vec<Job>) -> Result<(), EvaluatorError> {
-        self.bus.anticipate(jobs)
+        Ok(self.dispatch.anticipate(jobs)?)
     }
 
     fn computes_ahead(&self) -> bool {
-        self.bus.computes_ahead()
+        self.dispatch.computes_ahead()
     }
 
     async fn next(&mut self) -> Result<Completed, EvaluatorError> {
         loop {
-            let completed = self.bus.next().await?;
+            let completed = self.dispatch.next().await?;
             // what an earlier search no longer waits for
             if let Some(id) = completed.id.0.checked_sub(self.first) {
                 self.times.push(completed.cost.wall_s());
@@ -273,7 +274,7 @@ impl Evaluator for NumberedSearch<'_> {
         }
     }
 
-    fn workers_status(&self) -> WorkersSnapshot {
-        self.bus.workers_status()
+    fn snapshot(&self) -> Snapshot {
+        self.dispatch.snapshot()
     }
 }

@@ -1,17 +1,15 @@
 //! Session of a run, i.e. one process that works on it: opens the dispatcher in the run folder, does the
 //! work, and records the wall time.
-use super::{
-    bus::{self, Bus},
-    interrupt,
-    launch::Launch,
-    manifest::RunIdentity,
-    opened::Run,
-};
+use super::{dispatcher, interrupt, launch::Launch, manifest::RunIdentity, opened::Run};
 use crate::cli::{
     argument::workers::WorkersChoice, dashboard::AttachedDashboard, output::terminal,
 };
+use dispatch::runtime::{Dispatch, DispatchOptions};
 use std::{cell::RefCell, time::Instant};
-use study::{Stop, StudyError};
+use study::{EvaluatorError, Stop, StudyError};
+
+/// Maximum number of reasons for which jobs could not be computed that a session reports.
+const MOST_REASONS: usize = 3;
 
 /// Workers and start time of a session, one process that works on a run.
 pub(crate) struct Session {
@@ -54,25 +52,23 @@ impl Session {
     pub(crate) fn work<S: RunIdentity, T>(
         &self,
         run: &Run<S>,
-        work: impl AsyncFnOnce(&mut Bus, &mut Stop) -> anyhow::Result<T>,
+        work: impl AsyncFnOnce(&mut Dispatch, &mut Stop) -> anyhow::Result<T>,
     ) -> anyhow::Result<T> {
         let mut launch = Launch::prepare(&self.workers.remote, run.folder.path())?;
-        let door = launch
+        let network = launch
             .as_ref()
             .map_or(&self.workers.remote.door, |launch| &launch.endpoint)
             .clone();
-        let done = bus::block_on(async {
+        let done = dispatcher::block_on(async {
             let mut stop = interrupt::listen();
-            let options = bus::Options {
-                run_dir: run.folder.path().to_owned(),
-                network: door,
-                local_workers: self.workers.local(),
-                pause_limit: self.workers.pause_limit(),
-                kind: S::KIND.to_owned(),
-                settings: run.manifest.settings_json()?,
-            };
+            let settings = run.manifest.settings_json()?;
+            let (folder, workers) = (run.folder.path(), self.workers.local());
+            let mut options =
+                DispatchOptions::local(folder, workers, &run.case, S::KIND, settings)?;
+            options.pause_limit = self.workers.pause_limit();
+            network.allow(&mut options);
             let resumed = run.folder.is_begun();
-            let mut bus = Bus::open(options, &run.case).await?;
+            let mut dispatch = dispatcher::open(options).await?;
             // the journal is ours now: before, another run may have it
             run.save(run.manifest.wall_s)?;
             let path = run.folder.path();
@@ -80,19 +76,21 @@ impl Session {
                 *self.dashboard.borrow_mut() = AttachedDashboard::start(path, port);
             }
             let path = path.display();
-            terminal::tell(&match (resumed || bus.recorded() > 0, bus.recorded()) {
-                (false, _) => format!("beginning {path}"),
-                (true, 1) => format!("going on with {path}: its journal holds 1 result"),
-                (true, recorded) => {
-                    format!("going on with {path}: its journal holds {recorded} results")
-                }
-            });
+            terminal::tell(
+                &match (resumed || dispatch.recorded() > 0, dispatch.recorded()) {
+                    (false, _) => format!("beginning {path}"),
+                    (true, 1) => format!("going on with {path}: its journal holds 1 result"),
+                    (true, recorded) => {
+                        format!("going on with {path}: its journal holds {recorded} results")
+                    }
+                },
+            );
             launch.as_mut().map_or(Ok(()), Launch::up)?;
-            let done = work(&mut bus, &mut stop).await;
+            let done = work(&mut dispatch, &mut stop).await;
             // while the run is still locked
             let remembered = run.save(self.wall_s(run));
-            let failures = bus.failures();
-            let closed = bus.close().await;
+            let failures = failure_notes(&dispatch);
+            let closed = dispatch.close().await;
             let is_stopped = |error: &anyhow::Error| {
                 matches!(error.downcast_ref(), Some(StudyError::Interrupted))
             };
@@ -103,7 +101,7 @@ impl Session {
             }
             let done = done?;
             remembered?;
-            closed?;
+            closed.map_err(EvaluatorError::from)?;
             Ok(done)
         });
         *self.launched.borrow_mut() = launch;
@@ -122,9 +120,27 @@ impl Session {
 /// Returns whether repeating the command after this error may add results to the run: true after an
 /// interruption or an evaluator error, false if the case or the workers are at fault.
 fn can_go_on(error: &anyhow::Error) -> bool {
-    let study = error.downcast_ref::<StudyError>();
-    matches!(
-        study,
-        Some(StudyError::Interrupted | StudyError::Evaluator(_))
-    )
+    match error.downcast_ref::<StudyError>() {
+        Some(StudyError::Evaluator(error)) => error.may_go_on,
+        study => matches!(study, Some(StudyError::Interrupted)),
+    }
+}
+
+/// Returns a sentence for each of the most frequent reasons for which jobs could not be computed, and one on the
+/// others.
+fn failure_notes(dispatch: &Dispatch) -> Vec<String> {
+    let all = dispatch.failures();
+    let (most, others) = all.split_at(all.len().min(MOST_REASONS));
+    let sentence = |(count, reason): &&(usize, String)| match count {
+        1 => format!("one simulation could not be computed: {reason}"),
+        _ => format!("{count} simulations could not be computed: {reason}"),
+    };
+    let mut sentences: Vec<String> = most.iter().map(sentence).collect();
+    let others: usize = others.iter().map(|(count, _)| count).sum();
+    if others > 0 {
+        sentences.push(format!(
+            "{others} more could not be computed for other reasons"
+        ));
+    }
+    sentences
 }

@@ -1,5 +1,5 @@
 //! Export of a run as tables for queries: a fold over its journal.
-use super::{bus, calibration::Calibration, folder::RunFolder, manifest::Manifest};
+use super::{calibration::Calibration, folder::RunFolder, hash, manifest, manifest::Manifest};
 use crate::cli::output::{problem::Problem, terminal};
 use protocol::case::Case;
 use serde::Serialize;
@@ -39,7 +39,7 @@ pub(crate) fn run_properties<S: Serialize>(
     Ok(vec![
         ("kind", kind.clone()),
         ("program", program.clone()),
-        ("exported_by", bus::PROGRAM.to_owned()),
+        ("exported_by", manifest::PROGRAM.to_owned()),
         ("command", command.clone()),
         ("preset", preset.clone()),
         ("set", set.join(" ")),
@@ -107,7 +107,7 @@ pub(crate) fn export(
     }
     let mut store = Store::begin(target, source.case).map_err(explained)?;
     store.fact("case", &source.case.name)?;
-    store.fact("case_hash", &bus::case_hash(source.case)?)?;
+    store.fact("case_hash", &hash::case_hash(source.case)?)?;
     for (name, value) in &source.facts {
         store.fact(name, value)?;
     }

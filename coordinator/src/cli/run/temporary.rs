@@ -1,13 +1,9 @@
 //! Jobs of a single command on local workers, in a temporary run folder.
-use super::{
-    bus::{self, Bus},
-    interrupt,
-};
-use crate::cli::argument::listening::RemoteAccess;
+use super::{dispatcher, interrupt};
 use anyhow::Context as _;
-use dispatch::runtime::PAUSE_LIMIT;
+use dispatch::runtime::{Dispatch, DispatchOptions};
 use protocol::case::Case;
-use study::{self, CompareRequest, Compared, Stop, StudyError};
+use study::{self, CompareRequest, Compared, EvaluatorError, Stop, StudyError};
 
 /// Executes `work` with a dispatcher in a temporary run folder and with `local_workers` workers on this
 /// machine.
@@ -18,24 +14,17 @@ pub(crate) fn with_temporary_run<T>(
     case: &Case,
     kind: &str,
     local_workers: usize,
-    work: impl AsyncFnOnce(&mut Bus, &mut Stop) -> Result<T, StudyError>,
+    work: impl AsyncFnOnce(&mut Dispatch, &mut Stop) -> Result<T, StudyError>,
 ) -> anyhow::Result<T> {
     let scratch = tempfile::tempdir().context("cannot make a scratch folder")?;
     // what decides the result is not written down where nothing is resumed
     let settings = serde_json::to_string(&(kind, scratch.path()))?;
-    bus::block_on(async {
+    dispatcher::block_on(async {
         let mut stop = interrupt::listen();
-        let options = bus::Options {
-            run_dir: scratch.path().to_owned(),
-            network: RemoteAccess::default(),
-            local_workers,
-            pause_limit: PAUSE_LIMIT,
-            kind: kind.to_owned(),
-            settings,
-        };
-        let mut bus = Bus::open(options, case).await?;
-        let result = work(&mut bus, &mut stop).await;
-        bus.close().await?;
+        let options = DispatchOptions::local(scratch.path(), local_workers, case, kind, settings)?;
+        let mut dispatch = dispatcher::open(options).await?;
+        let result = work(&mut dispatch, &mut stop).await;
+        dispatch.close().await.map_err(EvaluatorError::from)?;
         Ok(result?)
     })
 }
@@ -51,7 +40,7 @@ pub(crate) fn compare_once(
     wanted: &[CompareRequest],
     workers: usize,
 ) -> anyhow::Result<Vec<Compared>> {
-    with_temporary_run(case, kind, workers, async |bus, stop| {
-        study::compare(bus, case, wanted, stop).await
+    with_temporary_run(case, kind, workers, async |dispatch, stop| {
+        study::compare(dispatch, case, wanted, stop).await
     })
 }

@@ -1,5 +1,5 @@
 //! Files written from a reduced head: the tables of the case, and a VTU file for `ParaView`.
-use crate::cli::run::bus::PROGRAM;
+use crate::cli::run::manifest::PROGRAM;
 use anyhow::Context as _;
 use case::pumping_unit::{GaugePlace, HeadSource, TwinFile, WrapStress};
 use protocol::pumping_unit::{HeadGauge, HeadMesh, Machine, ModeFamily, ReducedHead, TwinHead};

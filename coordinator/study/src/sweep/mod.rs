@@ -125,7 +125,7 @@ impl<'a> Sweep<'a> {
                 evaluator.anticipate(jobs.flatten().collect())?;
             }
             self.plan(waiting.clone().filter_map(|(_, search)| search.evaluations));
-            watch.progress(&self.view, &|| evaluator.workers_status());
+            watch.progress(&self.view, &|| evaluator.snapshot());
             if self.found.len() == all {
                 return Ok(self.found.values().skip(first).cloned().collect());
             }

@@ -2,7 +2,7 @@
 use super::*;
 use crate::JobNumbers;
 use crate::{
-    WorkersSnapshot, calibrate,
+    Snapshot, calibrate,
     test_evaluator::{TestEvaluator, case, physics},
 };
 use search::strategy::memetic::MemeticSettings;
@@ -10,7 +10,7 @@ use search::strategy::memetic::MemeticSettings;
 struct Unseen;
 
 impl Watch<ProgressView> for Unseen {
-    fn progress(&mut self, _view: &ProgressView, _crew: &dyn Fn() -> WorkersSnapshot) {}
+    fn progress(&mut self, _view: &ProgressView, _crew: &dyn Fn() -> Snapshot) {}
 }
 
 fn search(population: usize, seed: u64, evaluations: Option<u64>) -> Search {

@@ -1,8 +1,9 @@
 //! Client of a run's control socket.
 use super::{
-    messages::{ControlReply, ControlRequest, WorkerReport},
+    messages::{ControlReply, ControlRequest},
     path::{SOCKET, short_path},
 };
+use crate::scheduler::WorkerReport;
 use std::{
     io::{self, BufRead, BufReader, Read, Write},
     os::unix::net::UnixStream,

@@ -1,6 +1,6 @@
 //! Tests of divided and anticipated jobs: parts, their ids, and the joined results.
 use super::*;
-use crate::scheduler::is_part;
+use journal::job_range::is_part;
 use protocol::{
     id::{AttemptId, WorkerId},
     job::{Column, Counters, Evaluation, Individual, Per, Reply, SimulateSpec, Verdict},

@@ -1,5 +1,6 @@
 //! Tests of draining workers.
 use super::*;
+use crate::scheduler::WorkerPhase;
 
 fn drain(scene: &mut Scene, worker: u64, now: bool, end: bool) {
     let worker = WorkerId(worker);
@@ -25,9 +26,10 @@ fn a_drained_worker_finishes_what_it_holds_and_gets_no_more() {
     }
     assert_eq!(scene.given(), []);
     assert_eq!(scene.cancelled, []);
-    let hand = &scene.core.worker_statuses(scene.now)[0];
-    assert!(hand.is_drained && hand.jobs.is_empty());
-    assert_eq!(hand.done, given.len() as u64);
+    let (_, worker) = &scene.core.worker_reports(scene.now)[0];
+    assert_eq!(worker.state, WorkerPhase::Drained);
+    assert!(worker.jobs.is_empty());
+    assert_eq!(worker.done, given.len() as u64);
     // also when it comes again
     scene.tell(Input::Disconnected {
         worker: WorkerId(1),
@@ -72,9 +74,9 @@ fn a_worker_that_is_to_end_is_told_so_once_it_holds_nothing_and_whenever_it_come
     assert!(!told_to_end(&mut scene, 1), "it holds a job");
     scene.finish(1, attempt);
     assert!(told_to_end(&mut scene, 1));
-    assert!(scene.core.worker_statuses(scene.now).is_empty());
+    assert!(scene.core.worker_reports(scene.now).is_empty());
     // it did not hear
     scene.announce(1, 1, "m");
     assert!(told_to_end(&mut scene, 1));
-    assert!(scene.core.worker_statuses(scene.now).is_empty());
+    assert!(scene.core.worker_reports(scene.now).is_empty());
 }

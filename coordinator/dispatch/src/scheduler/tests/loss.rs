@@ -1,5 +1,6 @@
 //! Tests with workers that freeze, die, leave or outlive the coordinator.
 use super::*;
+use journal::job_range::PARTS;
 
 #[test]
 fn a_silent_worker_is_lost_after_four_seconds_and_its_late_result_still_counts() {
@@ -459,7 +460,7 @@ fn parts_that_nobody_requests_after_a_restart_are_cancelled_and_acknowledged() {
     let mut scene = Scene::with(JobSet::default(), 2);
     scene.core.options.expected = [WorkerId(1)].into();
     let old = |job| Attempt {
-        job: JobId(PART | job),
+        job: JobId(PARTS | job),
         attempt: AttemptId(1 << 16),
     };
     scene.announce(1, 3, "m");
@@ -467,7 +468,7 @@ fn parts_that_nobody_requests_after_a_restart_are_cancelled_and_acknowledged() {
     scene.finish(1, old(3));
     assert_eq!((scene.cancelled.len(), scene.acknowledged.len()), (0, 0));
     // one is requested again
-    let (id, again) = (JobId(PART | 2), job(PART | 2));
+    let (id, again) = (JobId(PARTS | 2), job(PARTS | 2));
     scene.tell(Input::Submit { id, job: again });
     scene.wait(4, &[]);
     scene.beat(1, &[old(1), old(2)]);

@@ -83,9 +83,9 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let counted = Arc::clone(&refused);
     // it blocks on the input, and is left behind when the work is over
     std::thread::spawn(move || read(&space, &asking, &counted));
-    session.work(&run, async |bus, stop| {
+    session.work(&run, async |dispatch, stop| {
         let answer = &mut |tag: Tag, scored: &_| say(&Line::scored(&tag, scored));
-        evaluate(bus, &run.case, &mut requests, answer, stop).await
+        evaluate(dispatch, &run.case, &mut requests, answer, stop).await
     })?;
     match refused.load(Ordering::SeqCst) {
         0 => Ok(()),

@@ -4,8 +4,8 @@ use crate::cli::{
     argument::output::Output,
     output::{problem::Problem, progress::Silent},
     run::{
-        bus,
         calibration::calibrate,
+        dispatcher, manifest,
         manifest::{CALIBRATE, FORMAT},
         opened::Run,
     },
@@ -30,7 +30,7 @@ use std::{
     path::Path,
 };
 use study::{
-    CalibrationResult, Completed, Entry, EvaluationLog, Evaluator, EvaluatorError, WorkersSnapshot,
+    CalibrationResult, Completed, Entry, EvaluationLog, Evaluator, EvaluatorError, Snapshot,
 };
 
 /// Evaluator that simulates with the test oracle and writes every result to a journal, as a run does; fails
@@ -64,6 +64,7 @@ impl Evaluator for JournalingEvaluator {
             return Err(EvaluatorError {
                 message: "enough".to_owned(),
                 help: None,
+                may_go_on: true,
             });
         }
         self.left -= 1;
@@ -87,8 +88,8 @@ impl Evaluator for JournalingEvaluator {
         Ok(completed)
     }
 
-    fn workers_status(&self) -> WorkersSnapshot {
-        WorkersSnapshot::default()
+    fn snapshot(&self) -> Snapshot {
+        Snapshot::default()
     }
 }
 
@@ -100,7 +101,7 @@ fn run_with(folder: &Path, results: usize) -> (JournalingEvaluator, Option<Calib
     let manifest = Manifest {
         kind: CALIBRATE.to_owned(),
         format: FORMAT,
-        program: bus::PROGRAM.to_owned(),
+        program: manifest::PROGRAM.to_owned(),
         command: "horsehead calibrate X".to_owned(),
         preset: "memetic".to_owned(),
         seed: 3,
@@ -134,7 +135,7 @@ fn run_with(folder: &Path, results: usize) -> (JournalingEvaluator, Option<Calib
         jobs: BTreeMap::new(),
         left: results,
     };
-    let found = bus::block_on(async {
+    let found = dispatcher::block_on(async {
         let mut stop = tokio::sync::watch::channel(false).1;
         let found = calibrate(&mut scribe, &run, &mut Silent, &mut stop).await?;
         scribe.enter(&Entry::Estimated(Vec::new()))?;

@@ -17,8 +17,8 @@ use crate::cli::{
         terminal,
     },
     run::{
-        bus,
         folder::RESULT,
+        hash,
         manifest::Manifest,
         name::RunName,
         opened::Run,
@@ -114,7 +114,7 @@ fn begin(arguments: &FileArguments) -> anyhow::Result<(Run<SweptFile>, Individua
         (FileContent::Grid(searches), Individuals::default())
     } else {
         let all = Individuals::read(&file, &space)?;
-        let hash = bus::content_hash(&all.rows)?.to_string();
+        let hash = hash::content_hash(&all.rows)?.to_string();
         (FileContent::Individuals(hash), all)
     };
     let path = if let Some(path) = &arguments.run {
@@ -149,13 +149,13 @@ fn search(session: &Session, run: &Run<SweptFile>, searches: &Searches) -> anyho
     let space = Space::new(&run.case.unknowns)?;
     let rows = rows(searches);
     let list = searches.list(&space, &rows)?;
-    session.work(run, async |bus, stop| {
+    session.work(run, async |dispatch, stop| {
         let mut display = Display::counting("searches done", run.case.objective_unit());
-        display.resumed(bus.recorded());
+        display.resumed(dispatch.recorded());
         let mut sweep = Sweep::new(&run.case, &space);
-        let found = sweep.run(bus, &list, &mut display, stop).await;
+        let found = sweep.run(dispatch, &list, &mut display, stop).await;
         display.clear();
-        Ok(bus.enter(&Entry::Swept(searches.tried(&rows, &found?)))?)
+        Ok(dispatch.enter(&Entry::Swept(searches.tried(&rows, &found?)))?)
     })
 }
 
@@ -163,14 +163,14 @@ fn search(session: &Session, run: &Run<SweptFile>, searches: &Searches) -> anyho
 fn score(session: &Session, run: &Run<SweptFile>, all: &Individuals) -> anyhow::Result<()> {
     let space = Space::new(&run.case.unknowns)?;
     let individuals: Vec<Vec<f64>> = all.rows.iter().map(|row| space.expand(row)).collect();
-    session.work(run, async |bus, stop| {
+    session.work(run, async |dispatch, stop| {
         let mut display = Display::counting("tables done", run.case.objective_unit());
-        display.resumed(bus.recorded());
-        let found = score_all(bus, &run.case, &individuals, &mut display, stop).await;
+        display.resumed(dispatch.recorded());
+        let found = score_all(dispatch, &run.case, &individuals, &mut display, stop).await;
         display.clear();
         found?;
         for part in Entry::table(&all.names, &all.rows) {
-            bus.enter(&part)?;
+            dispatch.enter(&part)?;
         }
         Ok(())
     })

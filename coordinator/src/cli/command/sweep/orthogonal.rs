@@ -211,12 +211,12 @@ fn begin(arguments: &Arguments) -> anyhow::Result<Run<Orthogonal>> {
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let session = Session::begin(&arguments.workers);
     let run = begin(arguments)?;
-    session.work(&run, async |bus, stop| {
+    session.work(&run, async |dispatch, stop| {
         let mut display = Display::counting("searches done", run.case.objective_unit());
-        display.resumed(bus.recorded());
-        let tested = test(bus, &run, &mut display, stop).await;
+        display.resumed(dispatch.recorded());
+        let tested = test(dispatch, &run, &mut display, stop).await;
         display.clear();
-        Ok(bus.enter(&Entry::Tested(Box::new(tested?)))?)
+        Ok(dispatch.enter(&Entry::Tested(Box::new(tested?)))?)
     })?;
     show(&run, arguments.output.output)
 }

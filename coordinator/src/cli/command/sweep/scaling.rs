@@ -12,7 +12,7 @@ use crate::cli::{
         terminal,
     },
     run::{
-        bus,
+        dispatcher,
         folder::RESULT,
         interrupt,
         manifest::{Manifest, RunIdentity as _},
@@ -201,7 +201,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let folder = run.folder.path();
     fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
     run.save(0.0)?;
-    let scaled = bus::block_on(async {
+    let scaled = dispatcher::block_on(async {
         let mut stop = interrupt::listen();
         let mut display = Display::counting("searches done", run.case.objective_unit());
         let space = run.manifest.space(&run.case)?;

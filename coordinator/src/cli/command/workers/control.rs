@@ -6,10 +6,8 @@ use crate::cli::{
     run::launch::execute,
 };
 use clap::Args;
-use dispatch::runtime::control::{
-    self, SOCKET,
-    messages::{ControlRequest, WorkerPhase, WorkerReport},
-};
+use dispatch::runtime::control::{self, SOCKET, messages::ControlRequest};
+use dispatch::scheduler::{WorkerPhase, WorkerReport};
 use launch::ssh::{self, EndedWorkers};
 use report::table::{Row, Table, text};
 use serde::Serialize;
