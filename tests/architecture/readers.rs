@@ -4,8 +4,12 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Folders and files of the readers of runs. The dashboard is none of them: it follows runs that go on.
-const READERS: [&str; 6] = [
+/// Folders and files of the readers of runs. The simulator of the dashboard is none of them: it computes what no run has.
+const READERS: [&str; 10] = [
+    "coordinator/src/cli/dashboard/folder.rs",
+    "coordinator/src/cli/dashboard/follow.rs",
+    "coordinator/src/cli/dashboard/sections.rs",
+    "coordinator/src/cli/dashboard/state.rs",
     "coordinator/report/src",
     "coordinator/store/src",
     "coordinator/src/cli/output",

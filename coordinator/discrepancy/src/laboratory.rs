@@ -49,7 +49,7 @@ impl Stage {
 }
 
 /// Interim result of a diagnosis, for display: the suspects of the present model, and what it leaves of the record.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Finding {
     /// Identifiers of the effects that the present model has in addition to the case's own.
     pub added: Vec<String>,
@@ -61,7 +61,7 @@ pub struct Finding {
 }
 
 /// Candidate effect of an interim result.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Suspect {
     /// Identifier of the effect.
     pub id: String,
@@ -99,8 +99,12 @@ pub trait Laboratory {
     }
 
     /// Receives an interim result of the diagnosis, for display only.
-    fn found(&mut self, finding: &Finding) {
+    ///
+    /// # Errors
+    /// If the laboratory keeps interim results and cannot keep this one.
+    fn found(&mut self, finding: &Finding) -> Result<(), Self::Error> {
         let _ = finding;
+        Ok(())
     }
 
     /// Simulates a batch and returns its observations in order, `None` for an experiment that failed.

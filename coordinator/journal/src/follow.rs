@@ -1,15 +1,11 @@
 //! Reading of a journal while its run writes it, without locking or changing it.
 use super::{
     error::JournalError,
-    index::result_at,
     read::{Damage, JournalEntry, fold_from},
 };
-use crate::event::{Event, Finished};
-use protocol::id::JobId;
+use crate::event::Event;
 use std::{
-    collections::BTreeMap,
-    fs::{self, File},
-    io,
+    fs, io,
     os::unix::fs::MetadataExt,
     path::{Path, PathBuf},
 };
@@ -31,15 +27,12 @@ pub enum Growth {
 #[derive(Debug)]
 pub struct JournalFollower {
     path: PathBuf,
-    file: Option<File>,
     /// File offset of the end of the last readable record (bytes).
     end: u64,
     /// Length of the file when it was last read (bytes).
     length: u64,
-    /// Inode of the file, which tells a replaced journal.
-    inode: u64,
-    /// File offset of the body of each job's first result.
-    results: BTreeMap<JobId, u64>,
+    /// Inode of the file, which tells a replaced journal; `None` before the first reading.
+    inode: Option<u64>,
     damage: Vec<Damage>,
 }
 
@@ -48,11 +41,9 @@ impl JournalFollower {
     pub fn new(path: &Path) -> Self {
         Self {
             path: path.to_owned(),
-            file: None,
             end: 0,
             length: 0,
-            inode: 0,
-            results: BTreeMap::new(),
+            inode: None,
             damage: Vec::new(),
         }
     }
@@ -62,16 +53,22 @@ impl JournalFollower {
     ///
     /// # Errors
     /// [`JournalError::Io`] if the file cannot be read, [`JournalError::Version`] if another version wrote it.
-    pub fn read(
-        &mut self,
-        mut apply: impl FnMut(JournalEntry, &Event),
-    ) -> Result<Growth, JournalError> {
+    pub fn read(&mut self, apply: impl FnMut(JournalEntry, Event)) -> Result<Growth, JournalError> {
         let state = match fs::metadata(&self.path) {
             Ok(state) => state,
             Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Growth::Missing),
-            Err(source) => return Err(self.failed("read", source)),
+            Err(source) => {
+                let path = self.path.clone();
+                let doing = "read";
+                return Err(JournalError::Io {
+                    doing,
+                    path,
+                    source,
+                });
+            }
         };
-        if self.file.is_some() && (state.ino() != self.inode || state.len() < self.end) {
+        let is_other = |inode| state.ino() != inode || state.len() < self.end;
+        if self.inode.is_some_and(is_other) {
             *self = Self::new(&self.path);
             return Ok(Growth::Replaced);
         }
@@ -81,18 +78,9 @@ impl JournalFollower {
         if state.len() == self.length {
             return Ok(Growth::Unchanged);
         }
-        if self.file.is_none() {
-            self.file = Some(File::open(&self.path).map_err(|error| self.failed("open", error))?);
-            self.inode = state.ino();
-        }
+        self.inode = Some(state.ino());
         let before = self.end;
-        let results = &mut self.results;
-        let report = fold_from(&self.path, before, |entry, event| {
-            if let Event::Finished(finished) = &event {
-                results.entry(finished.job()).or_insert(entry.at);
-            }
-            apply(entry, &event);
-        })?;
+        let report = fold_from(&self.path, before, apply)?;
         self.length = state.len();
         self.end = report.end;
         // what is torn may be a record that is being written
@@ -103,30 +91,6 @@ impl JournalFollower {
         } else {
             Growth::Unchanged
         })
-    }
-
-    fn failed(&self, doing: &'static str, source: io::Error) -> JournalError {
-        JournalError::Io {
-            doing,
-            path: self.path.clone(),
-            source,
-        }
-    }
-
-    /// Returns whether a job has a result in what was read.
-    pub fn has_result(&self, job: JobId) -> bool {
-        self.results.contains_key(&job)
-    }
-
-    /// Reads the result of a job; `None` if the job has none in what was read.
-    ///
-    /// # Errors
-    /// [`JournalError::Io`] or [`JournalError::Wire`] if the record cannot be read.
-    pub fn recall(&self, job: JobId) -> Result<Option<Finished>, JournalError> {
-        match (&self.file, self.results.get(&job)) {
-            (Some(file), Some(at)) => result_at(file, *at).map_err(|error| error.of(&self.path)),
-            _ => Ok(None),
-        }
     }
 
     /// Returns the file offset of the end of the last record that was read (bytes).

@@ -56,7 +56,12 @@ pub async fn calibrate_case<E: Evaluator>(
     let wanted = recommended(case, PICTURES);
     // workers may be long in coming
     let mut view = ProgressView::default();
-    view.plan(&strategy.progress());
+    let plan = strategy.progress();
+    evaluator.enter(&Entry::Planned {
+        generations: plan.generations,
+        evaluations: plan.expected_evaluations,
+    })?;
+    view.plan(&plan);
     watch.progress(&view, &|| evaluator.snapshot());
     let first = match compare(evaluator, case, &wanted, stop).await {
         // others may do better; without a comparison there is no report
@@ -134,9 +139,9 @@ pub fn read_calibration(path: &Path, case: &Case) -> Result<RecordedCalibration,
     })
 }
 
-/// Fold of a calibration's events.
-#[derive(Default)]
-struct CalibrationReader {
+/// Fold of the requests of a calibration and their results, in the order of the journal.
+#[derive(Clone, Debug, Default)]
+pub struct CalibrationReader {
     log: EvaluationLog,
     /// Scores and curves of compared individuals by condition and position.
     scores: BTreeMap<(usize, usize), Evaluation>,
@@ -144,8 +149,32 @@ struct CalibrationReader {
 }
 
 impl CalibrationReader {
+    /// Returns the evaluations so far.
+    pub const fn log(&self) -> &EvaluationLog {
+        &self.log
+    }
+
+    /// Returns what was simulated of an individual of the comparison under a condition; `None` if it is none, or its curves
+    /// have not arrived.
+    pub fn compared(&self, condition: usize, genes: &[f64]) -> Option<ComparedCurves> {
+        let same = |own: &[f64]| {
+            let pairs = own.iter().zip(genes);
+            own.len() == genes.len() && pairs.into_iter().all(|(a, b)| a.to_bits() == b.to_bits())
+        };
+        (0..COMPARED.len()).find_map(|position| {
+            let place = (condition, position);
+            let (own, drawn) = self.curves.get(&place).filter(|(own, _)| same(own))?;
+            Some(ComparedCurves {
+                name: COMPARED[position].to_owned(),
+                genes: own.clone(),
+                evaluation: self.scores.get(&place).cloned(),
+                drawn: drawn.clone(),
+            })
+        })
+    }
+
     /// Takes a requested job with its result.
-    fn answer(&mut self, asked: Asked, finished: Finished) {
+    pub fn answer(&mut self, asked: Asked, finished: Finished) {
         let id = asked.job;
         let genes = asked.individual.map(|own| own.genes).unwrap_or_default();
         if let Some(place) = compared_individual(id) {
@@ -197,6 +226,9 @@ impl CalibrationReader {
                 }
                 Entry::Estimated(estimates) => estimated = Some(estimates),
                 Entry::Record(_)
+                | Entry::Planned { .. }
+                | Entry::Budgeted(_)
+                | Entry::Interim(_)
                 | Entry::Diagnosed(_)
                 | Entry::Identified(_)
                 | Entry::Swept(_)

@@ -4,7 +4,7 @@ use super::{
     entry::DiagnosisResult,
     error::StudyError,
     evaluator::Evaluator,
-    experiments::{Jobs, StageView},
+    experiments::{Jobs, StageView, enter_budget},
     stop::Stop,
     watch::Watch,
 };
@@ -24,6 +24,7 @@ pub async fn diagnose_on<E: Evaluator>(
     watch: &mut dyn Watch<StageView>,
     stop: &mut Stop,
 ) -> Result<DiagnosisResult, StudyError> {
+    enter_budget(evaluator, inputs, &Stage::ALL)?;
     let mut jobs = Jobs::new((evaluator, EXPERIMENTS), inputs, &Stage::ALL, watch, stop);
     let diagnosis = diagnose(&mut jobs, inputs).await?;
     let off = InactiveUnknowns::of(&inputs.unknowns).into_iter();

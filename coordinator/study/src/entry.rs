@@ -3,7 +3,7 @@ use super::orthogonal::{TestResult, TrialRun};
 use discrepancy::{
     diagnose::Diagnosis,
     identify::{IdentificationResult, UnknownEstimate},
-    laboratory::Stage,
+    laboratory::{Finding, Stage},
 };
 use protocol::announce::EffectDescriptor;
 use record::Record;
@@ -18,6 +18,17 @@ pub enum Entry {
     Record(Record),
     /// Notes about the case and its records, one sentence each.
     Noted(Vec<String>),
+    /// Plan of a calibration's search: its number of generations, and about how many individuals it evaluates.
+    Planned {
+        /// Planned number of generations.
+        generations: u32,
+        /// Expected number of evaluations.
+        evaluations: u64,
+    },
+    /// Stages of a diagnosis or identification with their budgets, in simulations without derivatives.
+    Budgeted(Vec<(Stage, f64)>),
+    /// Interim result of a diagnosis.
+    Interim(Finding),
     /// Result of the search of a calibration; its evaluations are the recorded jobs.
     Calibrated {
         /// Best individual found by the search.

@@ -4,7 +4,7 @@
 //! resumed run therefore finds all of them in its journal.
 use super::{
     batch::run_batch,
-    entry::StageCost,
+    entry::{Entry, StageCost},
     error::StudyError,
     evaluator::{Evaluator, answer},
     stop::Stop,
@@ -63,6 +63,17 @@ pub async fn library<E: Evaluator>(
     Ok(effects)
 }
 
+/// Enters the stages of a study with their budgets, in simulations without derivatives.
+pub(super) fn enter_budget<E: Evaluator>(
+    evaluator: &mut E,
+    inputs: &Inputs,
+    stages: &[Stage],
+) -> Result<(), StudyError> {
+    let budget = inputs.budget();
+    let of = |stage: &Stage| (*stage, budget[*stage as usize]);
+    Ok(evaluator.enter(&Entry::Budgeted(stages.iter().map(of).collect()))?)
+}
+
 /// Runner of a study's experiments (simulations), which it submits to an evaluator as jobs.
 pub(super) struct Jobs<'a, E> {
     evaluator: &'a mut E,
@@ -113,8 +124,9 @@ impl<E: Evaluator> Laboratory for Jobs<'_, E> {
         self.differentiates
     }
 
-    fn found(&mut self, finding: &Finding) {
+    fn found(&mut self, finding: &Finding) -> Result<(), StudyError> {
         self.watch.entered(finding);
+        Ok(self.evaluator.enter(&Entry::Interim(finding.clone()))?)
     }
 
     async fn observe(
@@ -124,7 +136,7 @@ impl<E: Evaluator> Laboratory for Jobs<'_, E> {
     ) -> Result<Vec<Option<Observation>>, StudyError> {
         let mut results: Vec<Option<Observation>> = vec![None; batch.len()];
         let mut open = batch.len();
-        let prices: Vec<f64> = batch.iter().map(cost).collect();
+        let prices: Vec<f64> = batch.iter().map(|spec| cost(spec.columns.len())).collect();
         let numbers = (self.next_id..).map(JobId);
         let jobs = numbers.zip(batch.into_iter().map(Job::Simulate)).collect();
         self.next_id += results.len() as u64;

@@ -4,7 +4,7 @@ use super::{
     entry::IdentificationStudy,
     error::StudyError,
     evaluator::Evaluator,
-    experiments::{Jobs, StageView},
+    experiments::{Jobs, StageView, enter_budget},
     stop::Stop,
     watch::Watch,
 };
@@ -40,6 +40,7 @@ pub async fn identify_on<E: Evaluator>(
         channels.map(|(_, channel)| channel.clone()).collect()
     };
     let conditions: Vec<Vec<Channel>> = (0..case.conditions.len()).map(of).collect();
+    enter_budget(evaluator, inputs, &STAGES)?;
     let mut jobs = Jobs::new((evaluator, EXPERIMENTS), inputs, &STAGES, watch, stop);
     let identified = identify(&mut jobs, inputs, &conditions).await?;
     let accounts = jobs.accounts();

@@ -16,7 +16,6 @@ mod error;
 mod evaluate;
 mod evaluator;
 mod experiments;
-mod follow;
 mod identify;
 mod job_number;
 mod log;
@@ -33,7 +32,9 @@ mod watch;
 
 pub use batch::{run_batch, score_all};
 pub use calibrate::{Calibrated, calibrate};
-pub use calibration::{CalibrationResult, RecordedCalibration, calibrate_case, read_calibration};
+pub use calibration::{
+    CalibrationReader, CalibrationResult, RecordedCalibration, calibrate_case, read_calibration,
+};
 pub use compare::{CompareRequest, Compared, ComparedCurves, PICTURES, compare};
 pub use diagnose::diagnose_on;
 pub use dispatch::scheduler::{Completed, Snapshot};
@@ -43,7 +44,6 @@ pub use evaluate::{EvaluationRequest, Scored, evaluate};
 pub use evaluator::Evaluator;
 pub use evaluator::answer;
 pub use experiments::{StageView, library};
-pub use follow::{FollowObserver, FollowingEvaluator};
 pub use identify::{estimate_at_start_on, identify_on};
 pub use job_number::JobNumbers;
 pub use log::{EvaluationLog, EvaluationOutcome, LogEntry};

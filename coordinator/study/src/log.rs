@@ -99,6 +99,11 @@ impl EvaluationLog {
         self.entries.values()
     }
 
+    /// Returns the log entry of an individual; `None` if it was not evaluated.
+    pub fn get(&self, id: u64) -> Option<&LogEntry> {
+        self.entries.get(&id)
+    }
+
     /// Returns the number of evaluated individuals in the log.
     pub fn len(&self) -> usize {
         self.entries.len()

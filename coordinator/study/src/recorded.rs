@@ -55,6 +55,9 @@ pub fn read_diagnosis(path: &Path) -> Result<RecordedDiagnosis, RecordError> {
             },
             Entry::Diagnosed(own) => result = Some(*own),
             Entry::Noted(_)
+            | Entry::Planned { .. }
+            | Entry::Budgeted(_)
+            | Entry::Interim(_)
             | Entry::Calibrated { .. }
             | Entry::Estimated(_)
             | Entry::Identified(_)

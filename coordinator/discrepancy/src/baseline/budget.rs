@@ -31,13 +31,12 @@ impl<'a, L> Budgeted<'a, L> {
     }
 }
 
-/// Returns the cost of a simulation relative to one without derivatives: 1, or with derivatives 5 plus 0.1
-/// per derivative.
-pub fn cost(spec: &SimulateSpec) -> f64 {
-    if spec.columns.is_empty() {
-        1.0
-    } else {
-        cost_with_derivatives(spec.columns.len())
+/// Returns the cost of a simulation with a number of derivatives relative to one without: 1, or with derivatives 5 plus
+/// 0.1 per derivative.
+pub fn cost(columns: usize) -> f64 {
+    match columns {
+        0 => 1.0,
+        some => cost_with_derivatives(some),
     }
 }
 
@@ -66,8 +65,8 @@ impl<L: Laboratory> Laboratory for Budgeted<'_, L> {
         self.left[stage as usize]
     }
 
-    fn found(&mut self, finding: &Finding) {
-        self.lab.found(finding);
+    fn found(&mut self, finding: &Finding) -> Result<(), L::Error> {
+        self.lab.found(finding)
     }
 
     async fn observe(
@@ -75,7 +74,10 @@ impl<L: Laboratory> Laboratory for Budgeted<'_, L> {
         stage: Stage,
         batch: Vec<SimulateSpec>,
     ) -> Result<Vec<Option<Observation>>, L::Error> {
-        self.left[stage as usize] -= batch.iter().map(cost).sum::<f64>();
+        self.left[stage as usize] -= batch
+            .iter()
+            .map(|spec| cost(spec.columns.len()))
+            .sum::<f64>();
         self.lab.observe(stage, batch).await
     }
 }

@@ -124,7 +124,7 @@ pub(crate) async fn test_effects<L: Laboratory>(
         current,
         &suspects,
         &[],
-    ));
+    ))?;
     let mut order = candidate::ranked(&suspects);
     // what its own test does not speak for is refitted only to have rivals
     let clear = order.iter().filter(|s| s.p_value() < thresholds.alpha);
@@ -158,7 +158,7 @@ pub(crate) async fn test_effects<L: Laboratory>(
         current,
         &suspects,
         &refits,
-    ));
+    ))?;
     Ok(WorkingRound::new(current, suspects, generics, refits))
 }
 

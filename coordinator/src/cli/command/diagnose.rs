@@ -4,7 +4,8 @@ use crate::cli::{
     argument::{case::case_folder, output::OutputChoice, workers::WorkersChoice},
     output::{diagnosis::DiagnosisOutput, problem::EXIT_CODES, progress::StageDisplay, terminal},
     run::{
-        diagnosis::{Diagnosis, DiagnosisSettings, diagnose},
+        diagnosis::{DiagnosisSettings, diagnose},
+        kind::AnyRun,
         manifest::DIAGNOSE,
         opened::Run,
         session::Session,
@@ -73,26 +74,12 @@ pub(super) struct Arguments {
 /// Runs the diagnosis from the measured records to the report.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let session = Session::begin(&arguments.workers);
-    let mut target = Target::read(
+    let target = Target::read(
         &arguments.target,
         arguments.measured.as_deref(),
         arguments.genes.as_deref(),
     )?;
     let seed = target.seed(arguments.seed);
-    let path = match &arguments.run {
-        Some(path) => path.clone(),
-        // after --add the case has what the run found
-        None => match target.earlier_path(DIAGNOSE, seed)? {
-            Some(earlier) => earlier,
-            None => target.run_path(DIAGNOSE, seed)?,
-        },
-    };
-    let stated = target.loaded.effects.len();
-    if let Ok(earlier) = Diagnosis::open(&path) {
-        target = target.without_additions_of(&earlier)?;
-    }
-    let has_own = target.loaded.effects.len() < stated;
-    terminal::note(&target.loaded.notes);
     let settings = DiagnosisSettings {
         thresholds: Thresholds {
             rounds: usize::from(arguments.rounds),
@@ -102,6 +89,22 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         },
         differences: arguments.differences,
     };
+    let file = target.folder.join("case.toml");
+    let given = arguments.run.as_deref();
+    // after --add the case has what the run found
+    if let Some(finder) = target.finder(given, (seed, &settings))? {
+        terminal::tell(&format!(
+            "{} has what {} found already",
+            file.display(),
+            finder.folder.path().display()
+        ));
+        return AnyRun::Diagnosis(finder).show(arguments.output.output);
+    }
+    let path = match given {
+        Some(path) => path.to_owned(),
+        None => target.run_path(DIAGNOSE, seed)?,
+    };
+    terminal::note(&target.loaded.notes);
     let manifest = target.manifest(seed, settings)?;
     let run = Run::begin(&path, manifest, target.loaded.case.clone())?;
     session.work(&run, async |dispatch, stop| {
@@ -112,13 +115,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     })?;
     let answer = DiagnosisOutput::read(&run, session.wall_s(&run))?;
     let object = answer.write()?;
-    let file = target.folder.join("case.toml");
-    if arguments.add && has_own {
-        terminal::tell(&format!(
-            "{} has what this run found already",
-            file.display()
-        ));
-    } else if arguments.add {
+    if arguments.add {
         answer.add(&file)?;
     }
     answer.print(arguments.output.output, &object)

@@ -155,7 +155,7 @@ impl Counts {
         let (follower, count) = self.journals.entry(run.to_owned()).or_insert_with(new);
         loop {
             let read =
-                follower.read(|_, event| *count += u64::from(matches!(event, Event::Finished(_))));
+                follower.read(|_, event| *count += u64::from(matches!(&event, Event::Finished(_))));
             match read.ok()? {
                 Growth::Replaced => *count = 0,
                 Growth::Missing => return None,

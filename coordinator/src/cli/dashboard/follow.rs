@@ -1,20 +1,18 @@
-//! Following of one run: its study is repeated on the growing journal in one thread, and its page is rendered
-//! in another.
+//! Following of one run: its journal is read as it grows in one thread, and its page is rendered in another.
 use super::{
     sections::{self, ComparedRuns, pair},
     simulator::{Awaited, HashedCase, Simulated, Simulator},
     state::{RunState, SharedState},
 };
+use crate::cli::output::calibration::report_run;
 use crate::cli::run::{
-    dispatcher,
     folder::{MANIFEST, RESULT, RunFolder},
     kind::AnyRun,
     manifest::{CALIBRATE, DIAGNOSE, IDENTIFY},
 };
 use dashboard::{Board, PageReader, Pages};
-use journal::event::{Event, Finished};
-use journal::{Damage, Growth, JournalEntry, JournalFollower};
-use protocol::{case::Case, job::Job};
+use journal::{Growth, JournalFollower};
+use protocol::case::Case;
 use report::{Block, Report, Section, document::section_markup};
 use std::{
     fs,
@@ -24,7 +22,7 @@ use std::{
     thread,
     time::{Duration, Instant, SystemTime},
 };
-use study::{FollowObserver, FollowingEvaluator, StudyError};
+use study::StudyError;
 use tokio::sync::{oneshot, watch};
 
 /// Interval at which the page of a run is rendered, if something has changed.
@@ -36,8 +34,7 @@ const REST: u32 = 9;
 const RETRY: Duration = Duration::from_secs(30);
 /// Minimum time between two simulations of the best individual so far.
 const BEST_INTERVAL: Duration = Duration::from_secs(4);
-/// Longest wait for the result file of a run whose last result is in the journal, and for the last results of a run
-/// whose result file is written.
+/// Longest wait for the last results of a run whose result file is written.
 const RESULT_WAIT: Duration = Duration::from_secs(5);
 
 /// Run that is followed until this value is dropped.
@@ -59,12 +56,12 @@ struct Shared {
     stopped: watch::Receiver<bool>,
 }
 
-/// End of a followed study.
+/// End of a followed run.
 #[derive(Clone, Default)]
 struct Ending {
     /// Report of the finished run.
     report: Option<Arc<Report>>,
-    /// Why the study could not go on.
+    /// Why the run cannot be followed, or its result not be shown.
     error: Option<String>,
 }
 
@@ -117,7 +114,7 @@ impl Followed {
         let case = &run.case;
         let genes = {
             let state = self.shared.state.lock();
-            state.history.get(&number)?.genes.clone()
+            state.reading.log().get(number)?.genes.clone()
         };
         let both = [case.case.start(), genes.clone()].map(|one| self.shared.runs_of(case, &one));
         let mut found = Vec::new();
@@ -191,7 +188,7 @@ impl Shared {
     fn follow(&self) {
         while !self.is_stopped() {
             let before = self.stamps();
-            let followed = self.study();
+            let followed = self.read();
             let ended = followed.is_ok();
             self.end(match followed {
                 Ok(report) => Ending {
@@ -221,71 +218,87 @@ impl Shared {
         }
     }
 
-    /// Repeats the study of the run as its results arrive, and returns the report of its end.
-    fn study(&self) -> anyhow::Result<Report> {
+    /// Reads the journal of the run as it grows, and returns the report of the finished run.
+    fn read(&self) -> anyhow::Result<Report> {
         if self.opened().is_some() && !RunFolder::new(&self.path).is_begun() {
             anyhow::bail!("the run folder was deleted; what was read before stays on this page");
         }
-        let kind = RunFolder::at(&self.path)?.head()?.kind;
-        if ![CALIBRATE, DIAGNOSE, IDENTIFY].contains(&kind.as_str()) {
-            return self.count_results(&kind);
-        }
-        let run = Arc::new(AnyRun::open(&self.path)?);
-        *self.run.lock().unwrap_or_else(PoisonError::into_inner) = Some(OpenedRun {
-            run: Arc::clone(&run),
-            case: HashedCase::new(run.case())?,
-        });
-        let mut stop = self.stopped.clone();
-        let mut watch = self.state.clone();
-        let mut observer = Observer {
-            shared: self,
-            has_begun: false,
+        let folder = RunFolder::at(&self.path)?;
+        let kind = folder.head()?.kind;
+        let run = if [CALIBRATE, DIAGNOSE, IDENTIFY].contains(&kind.as_str()) {
+            let run = Arc::new(AnyRun::open(&self.path)?);
+            *self.run.lock().unwrap_or_else(PoisonError::into_inner) = Some(OpenedRun {
+                run: Arc::clone(&run),
+                case: HashedCase::new(run.case())?,
+            });
+            Some(run)
+        } else {
+            *self.other.lock().unwrap_or_else(PoisonError::into_inner) = Some(kind.clone());
+            None
         };
-        let mut evaluator = FollowingEvaluator::new(&self.path.join(journal::FILE), &mut observer);
-        dispatcher::block_on(async { run.replay(&mut evaluator, &mut watch, &mut stop).await })?;
-        run.report(self.wall_s()?)
-    }
-
-    /// Follows the journal of a run whose study is not repeated, such as a sweep or requests of another program,
-    /// and returns a report of its results and workers.
-    fn count_results(&self, kind: &str) -> anyhow::Result<Report> {
-        self.state.clear();
-        *self.other.lock().unwrap_or_else(PoisonError::into_inner) = Some(kind.to_owned());
-        self.end(Ending::default());
-        let folder = RunFolder::new(&self.path);
         let mut journal = JournalFollower::new(&folder.file(journal::FILE));
-        let mut observer = self.state.clone();
+        // position up to which no report could be made
+        let mut refused = None;
         loop {
             let was_finished = folder.is_finished();
-            let growth = journal.read(|entry, event| observer.event(entry, event))?;
-            observer.read(growth, journal.position(), journal.damage());
+            let growth = self.read_on(&mut journal)?;
             if self.is_stopped() {
                 return Err(StudyError::Interrupted.into());
             }
-            if growth == Growth::Replaced || (growth == Growth::Missing && !folder.is_begun()) {
-                anyhow::bail!("the run folder was deleted");
-            }
-            if was_finished && growth == Growth::Unchanged {
-                let state = self.state.lock();
-                let title = sections::other_title(kind, &self.path);
-                return Ok(Report::new(title, "", sections::other(kind, &state)));
+            let had_begun = journal.position() > 0;
+            match growth {
+                Growth::Replaced => anyhow::bail!("the journal was replaced by another one"),
+                Growth::Missing if had_begun || !folder.is_begun() => {
+                    anyhow::bail!("the run folder was deleted")
+                }
+                Growth::Unchanged if was_finished && refused != Some(journal.position()) => {
+                    match self.report(&folder, &kind, run.as_deref()) {
+                        Ok(report) => return Ok(report),
+                        Err(error) => self.end(Ending {
+                            report: None,
+                            error: Some(format!("{error:#}")),
+                        }),
+                    }
+                    refused = Some(journal.position());
+                }
+                Growth::Missing | Growth::Unchanged | Growth::Grown => {}
             }
             thread::sleep(INTERVAL);
         }
     }
 
-    /// Waits for the result of the run and returns the wall time in it (s).
-    fn wall_s(&self) -> anyhow::Result<f64> {
-        let begun = Instant::now();
-        let folder = RunFolder::new(&self.path);
-        while !folder.is_finished() && begun.elapsed() < RESULT_WAIT {
-            if self.is_stopped() {
-                return Err(StudyError::Interrupted.into());
+    /// Reads what was appended to the journal. Before the first event it forgets what was known, and why the run could
+    /// not be followed before.
+    fn read_on(&self, journal: &mut JournalFollower) -> anyhow::Result<Growth> {
+        let mut is_first = journal.position() == 0;
+        let growth = journal.read(|_, event| {
+            if is_first {
+                self.state.clear();
+                self.end(Ending::default());
+                is_first = false;
             }
-            thread::sleep(INTERVAL);
+            self.state.event(event);
+        })?;
+        if growth == Growth::Grown {
+            self.state.damage(journal.damage());
         }
+        Ok(growth)
+    }
+
+    /// Returns the report of a finished run; of a run of another kind, such as a sweep, its results and workers.
+    fn report(
+        &self,
+        folder: &RunFolder,
+        kind: &str,
+        run: Option<&AnyRun>,
+    ) -> anyhow::Result<Report> {
+        let Some(run) = run else {
+            let title = sections::other_title(kind, &self.path);
+            let sections = sections::other(kind, &self.state.lock());
+            return Ok(Report::new(title, "", sections));
+        };
         let result: serde_json::Value = folder.read_json(RESULT)?;
-        Ok(result["wall_s"].as_f64().unwrap_or_default())
+        run.report(result["wall_s"].as_f64().unwrap_or_default())
     }
 
     /// Returns the runs of an individual if they are known, from the journal or a former simulation; otherwise
@@ -396,38 +409,6 @@ impl Shared {
     }
 }
 
-/// Observer of a journal that forgets what was known, and why it could not be followed before, when the journal is
-/// read for the first time.
-struct Observer<'a> {
-    shared: &'a Shared,
-    has_begun: bool,
-}
-
-impl Observer<'_> {
-    fn begin(&mut self) {
-        if !self.has_begun {
-            self.has_begun = true;
-            self.shared.state.clear();
-            self.shared.end(Ending::default());
-        }
-    }
-}
-
-impl FollowObserver for Observer<'_> {
-    fn event(&mut self, entry: JournalEntry, event: &Event) {
-        self.begin();
-        self.shared.state.clone().event(entry, event);
-    }
-
-    fn result(&mut self, job: &Job, finished: &Finished) {
-        self.shared.state.clone().result(job, finished);
-    }
-
-    fn read(&mut self, growth: Growth, position: u64, damage: &[Damage]) {
-        self.shared.state.clone().read(growth, position, damage);
-    }
-}
-
 /// Returns whether a process of this machine has locked the journal in a run folder, or the file that earlier
 /// versions lock, from the kernel's table of locks.
 pub(super) fn is_locked(run: &Path) -> bool {
@@ -457,22 +438,13 @@ pub(super) fn has_grown_lately(run: &Path) -> bool {
 
 /// Returns the runs of an individual that the run itself simulated for its tables, if all are there.
 fn recorded(case: &Case, state: &RunState, genes: &[f64]) -> Option<Simulated> {
-    let bits: Vec<u64> = genes.iter().map(|gene| gene.to_bits()).collect();
-    let mut runs = Vec::new();
-    for wanted in study::recommended(case, 0) {
-        let shown = state.shown.get(&(bits.clone(), wanted.condition))?;
-        let curves = study::ComparedCurves {
-            name: String::new(),
-            genes: Vec::new(),
-            evaluation: shown.evaluation.clone(),
-            drawn: shown.curves.clone()?,
-        };
-        runs.push((
-            wanted.condition,
-            crate::cli::output::calibration::report_run(&curves),
-        ));
-    }
-    Some(Arc::new(runs))
+    let run = |condition: usize| {
+        let curves = state.reading.compared(condition, genes)?;
+        Some((condition, report_run(&curves)))
+    };
+    let wanted = study::recommended(case, 0).into_iter();
+    let runs: Option<Vec<_>> = wanted.map(|own| run(own.condition)).collect();
+    Some(Arc::new(runs?))
 }
 
 /// Curves of the recommended and the best individual so far of a calibration.

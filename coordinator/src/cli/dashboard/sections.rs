@@ -99,21 +99,23 @@ fn running_s(state: &RunState) -> f64 {
 }
 
 fn search_progress(run: &Calibration, state: &RunState) -> Section {
-    let view = &state.progress;
+    let log = state.reading.log();
+    let (generations, planned) = state.plan;
+    let (completed, failed) = (log.len() as u64, log.failed() as u64);
     let unit = run.case.objective_unit();
     let unit = unit.map_or_else(String::new, |unit| format!(" {unit}²"));
     let mut facts = vec![Fact::new(
         "evaluations",
         format!(
             "{} of about {}",
-            count(view.completed),
-            count(view.expected)
+            count(completed),
+            count(planned.max(completed))
         ),
     )];
-    if view.generations > 1 {
+    if generations > 1 {
         facts.push(Fact::new(
             "generation or stage",
-            format!("{} of {}", view.generation, view.generations),
+            format!("{} of {generations}", state.generation),
         ));
     }
     if let Some(best) = state.best() {
@@ -126,11 +128,8 @@ fn search_progress(run: &Calibration, state: &RunState) -> Section {
             ),
         ));
     }
-    facts.push(Fact::new("did not complete", count(view.failed)));
-    facts.extend(time_left(
-        state,
-        view.expected.saturating_sub(view.completed),
-    ));
+    facts.push(Fact::new("did not complete", count(failed)));
+    facts.extend(time_left(state, planned.saturating_sub(completed)));
     facts.push(Fact::code("command", run.manifest.command.clone()));
     progress(vec![Block::Facts(facts)])
 }
@@ -163,27 +162,26 @@ const fn progress(blocks: Vec<Block>) -> Section {
 
 /// Returns the section on the stages of a diagnosis or identification.
 fn stage_progress(state: &RunState) -> Section {
-    let Some(last) = state.stages.last() else {
+    let Some(present) = state.stage else {
         return progress(vec![Block::Text(
             "Waiting for the first result.".to_owned(),
         )]);
     };
-    let position = |stage| state.stages.iter().find(|own| own.stage == stage);
-    let rows = last.stages.iter().map(|stage| {
-        let own = position(*stage);
-        let done = own.map_or(0, |own| own.done);
+    let rows = state.budget.iter().map(|(stage, budget)| {
+        let own = state.stages.get(stage).copied();
         let words = match own {
             None => "not begun",
-            Some(own) if own.stage == last.stage => "running",
+            Some(_) if *stage == present => "running",
             Some(_) => "done",
         };
-        let left = own.filter(|own| own.left.is_finite());
-        let left = left.map_or_else(|| MISSING.to_owned(), |own| fixed(own.left, 0));
-        let open = own.filter(|own| own.stage == last.stage);
-        let open = open.map_or(0, |own| own.open as u64);
+        let left = own.map(|own| (budget - own.spent).max(0.0));
+        let left = left.filter(|left| left.is_finite());
+        let left = left.map_or_else(|| MISSING.to_owned(), |left| fixed(left, 0));
+        let own = own.unwrap_or_default();
+        let open = own.asked.saturating_sub(own.done);
         Row::new(
             stage.name(),
-            [words.to_owned(), count(done), count(open), left],
+            [words.to_owned(), count(own.done), count(open), left],
         )
     });
     let table = Table::new(
@@ -193,7 +191,7 @@ fn stage_progress(state: &RunState) -> Section {
     )
     .with_notes(["Budget left: in simulations without derivatives; a stage ends sooner where it finds its answer."]);
     let facts = vec![
-        Fact::new("stage", last.stage.name()),
+        Fact::new("stage", present.name()),
         Fact::new("simulations", count(state.results)),
     ];
     progress(vec![Block::Facts(facts), Block::Table(table)])
@@ -284,7 +282,8 @@ fn calibration(run: &Calibration, state: &RunState, compared: ComparedRuns<'_>) 
     };
     let account = state.account.clone().finish(Vec::new());
     let shown = compared.best.map_or(&best.genes[..], |(genes, _)| genes);
-    let entry = state.history.values().find(|entry| entry.genes == shown);
+    let log = state.reading.log();
+    let entry = log.entries().find(|entry| entry.genes == shown);
     let data = report::Calibration {
         case: run.case.clone(),
         origin: match run.origin(String::new()) {
@@ -299,9 +298,8 @@ fn calibration(run: &Calibration, state: &RunState, compared: ComparedRuns<'_>) 
             id: entry.map(|entry| entry.id),
             genes: shown.to_vec(),
         },
-        history: state
-            .history
-            .values()
+        history: log
+            .entries()
             .map(|entry| history_point(entry, state.costs.get(&entry.id).copied()))
             .collect(),
         workers: account.workers,

@@ -1,17 +1,17 @@
-//! What is known of a run that is followed: a fold over its journal and over the study that is repeated on it.
-use discrepancy::laboratory::Finding;
-use journal::account::{AccountBuilder, Costs, JobCost};
-use journal::event::{Event, Finished};
-use journal::{Damage, Growth, JournalEntry, describe_damage};
-use protocol::{
-    id::WorkerId,
-    job::{Answer, Curves, Evaluation, Job, Outcome, Reply},
+//! What is known of a run that is followed: a fold over its journal.
+use discrepancy::{
+    baseline::budget::cost,
+    laboratory::{Finding, Stage},
 };
+use journal::account::{AccountBuilder, Costs, JobCost};
+use journal::event::{Asked, Event, Finished};
+use journal::{Answers, Damage, describe_damage};
+use protocol::{id::WorkerId, job::Outcome, wire};
 use std::{
     collections::BTreeMap,
     sync::{Arc, Mutex, MutexGuard, PoisonError},
 };
-use study::{FollowObserver, LogEntry, ProgressView, Snapshot, StageView, Watch};
+use study::{CalibrationReader, Entry, LogEntry};
 
 /// Worker of a run, as far as the journal tells.
 #[derive(Clone, Debug, Default)]
@@ -28,11 +28,15 @@ pub(super) struct WorkerState {
     pub(super) busy_s: f64,
 }
 
-/// Score and curves of one individual under one condition, as far as they have arrived.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Shown {
-    pub(super) evaluation: Option<Evaluation>,
-    pub(super) curves: Option<Curves>,
+/// Progress of one stage of a diagnosis or identification.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct StageState {
+    /// Number of requested simulations.
+    pub(super) asked: u64,
+    /// Number of simulations with a result.
+    pub(super) done: u64,
+    /// Cost of the requested simulations, in simulations without derivatives.
+    pub(super) spent: f64,
 }
 
 /// What is known of a run.
@@ -47,31 +51,38 @@ pub(super) struct RunState {
     pub(super) opened_unix_ms: u64,
     /// Number of results in the journal.
     pub(super) results: u64,
-    pub(super) history: BTreeMap<u64, LogEntry>,
+    answers: Answers,
+    /// Evaluations of a calibration, and what it simulated for its tables.
+    pub(super) reading: CalibrationReader,
+    /// Generation of the last individual that a search requested.
+    pub(super) generation: u32,
+    /// Planned generations and evaluations of a calibration.
+    pub(super) plan: (u32, u64),
     pub(super) costs: Costs,
     pub(super) account: AccountBuilder,
     pub(super) workers: BTreeMap<WorkerId, WorkerState>,
-    pub(super) progress: ProgressView,
-    /// Last progress of each stage of a diagnosis or identification, in order.
-    pub(super) stages: Vec<StageView>,
+    /// Stages of a diagnosis or identification with their budgets, in simulations without derivatives.
+    pub(super) budget: Vec<(Stage, f64)>,
+    /// Progress of the stages that were begun.
+    pub(super) stages: BTreeMap<Stage, StageState>,
+    /// Stage of the last request.
+    pub(super) stage: Option<Stage>,
     /// Interim results of a diagnosis, in order.
     pub(super) findings: Vec<Finding>,
     pub(super) notes: Vec<String>,
-    /// Individuals that the run simulates for its tables, by the bits of their values and the condition.
-    pub(super) shown: BTreeMap<(Vec<u64>, usize), Shown>,
 }
 
 impl RunState {
     /// Returns the log entry of the best individual whose simulation was complete.
     pub(super) fn best(&self) -> Option<&LogEntry> {
         let complete = |entry: &&LogEntry| entry.ending.failure().is_none();
-        let entries = self.history.values().filter(complete);
+        let entries = self.reading.log().entries().filter(complete);
         entries.min_by(|a, b| a.fitness.total_cmp(&b.fitness))
     }
 
-    fn event(&mut self, event: &Event) {
-        self.account.apply(event);
-        match event {
+    fn event(&mut self, event: Event) {
+        self.account.apply(&event);
+        match &event {
             Event::Opened { at_unix_ms, .. } => {
                 self.closed = false;
                 self.opened_unix_ms = *at_unix_ms;
@@ -91,48 +102,72 @@ impl RunState {
             Event::Left { worker, reason } => {
                 self.workers.entry(*worker).or_default().left = Some(reason.clone());
             }
-            Event::Finished(finished) => {
-                self.results += 1;
-                self.costs.insert(finished.job().0, JobCost::of(finished));
-                let Some(worker) = finished.worker else {
-                    return;
-                };
-                let own = self.workers.entry(worker).or_default();
-                own.done += 1;
-                own.failed += u64::from(matches!(finished.outcome, Outcome::Failed(_)));
-                own.busy_s += finished.cost.wall_s();
+            Event::Asked(asked) => self.asked(asked),
+            Event::Finished(finished) => self.finished(finished),
+            // one that cannot be read is told of when the run is over
+            Event::Found { entry, .. } => {
+                if let Ok(entry) = wire::decode(entry) {
+                    self.found(entry);
+                }
             }
-            Event::Begun { .. }
-            | Event::Asked(_)
-            | Event::Found { .. }
-            | Event::Proved { .. }
-            | Event::Accounted(_) => {}
+            Event::Begun { .. } | Event::Proved { .. } | Event::Accounted(_) => {}
+        }
+        if let Some((asked, finished)) = self.answers.pair(event) {
+            let stage = stage_of(&asked).and_then(|stage| self.stages.get_mut(&stage));
+            if let Some(stage) = stage {
+                stage.done += 1;
+            }
+            self.reading.answer(asked, finished);
         }
     }
 
-    fn result(&mut self, job: &Job, finished: &Finished) {
-        let (Job::Simulate(spec), Outcome::Done(answer)) = (job, &finished.outcome) else {
+    fn asked(&mut self, asked: &Asked) {
+        if let Some(stage) = stage_of(asked) {
+            let own = self.stages.entry(stage).or_default();
+            own.asked += 1;
+            own.spent += cost(asked.columns as usize);
+            self.stage = Some(stage);
+        }
+        self.generation = asked.reason.generation.unwrap_or(self.generation);
+    }
+
+    fn finished(&mut self, finished: &Finished) {
+        self.results += 1;
+        self.costs.insert(finished.job().0, JobCost::of(finished));
+        let Some(worker) = finished.worker else {
             return;
         };
-        let bits = spec.individual.genes.iter().map(|gene| gene.to_bits());
-        let key = (bits.collect(), spec.individual.condition);
-        match (answer, &spec.reply) {
-            (Answer::Curves(curves), Reply::Curves { .. }) => {
-                self.shown.entry(key).or_default().curves = Some((**curves).clone());
-            }
-            (Answer::Scored(evaluation), Reply::Score { whole: false, .. }) => {
-                self.shown.entry(key).or_default().evaluation = Some(evaluation.clone());
-            }
-            _ => {}
-        }
+        let own = self.workers.entry(worker).or_default();
+        own.done += 1;
+        own.failed += u64::from(matches!(finished.outcome, Outcome::Failed(_)));
+        own.busy_s += finished.cost.wall_s();
     }
 
-    fn stage(&mut self, view: &StageView) {
-        match self.stages.iter_mut().find(|old| old.stage == view.stage) {
-            Some(old) => *old = *view,
-            None => self.stages.push(*view),
+    fn found(&mut self, entry: Entry) {
+        match entry {
+            Entry::Planned {
+                generations,
+                evaluations,
+            } => self.plan = (generations, evaluations),
+            Entry::Budgeted(budget) => self.budget = budget,
+            Entry::Interim(finding) => self.findings.push(finding),
+            Entry::Noted(notes) => self.notes = notes,
+            Entry::Record(_)
+            | Entry::Calibrated { .. }
+            | Entry::Estimated(_)
+            | Entry::Diagnosed(_)
+            | Entry::Identified(_)
+            | Entry::Swept(_)
+            | Entry::Tested(_)
+            | Entry::Table { .. } => {}
         }
     }
+}
+
+/// Returns the stage of a diagnosis or identification that requested a job; `None` for other jobs.
+fn stage_of(asked: &Asked) -> Option<Stage> {
+    let mut all = Stage::ALL.into_iter();
+    all.find(|stage| stage.name() == asked.reason.purpose)
 }
 
 /// State of a run, shared between the thread that follows it and the one that renders it.
@@ -150,6 +185,16 @@ impl SharedState {
         change(&mut state);
     }
 
+    /// Takes the next event of the journal.
+    pub(super) fn event(&self, event: Event) {
+        self.change(|state| state.event(event));
+    }
+
+    /// Takes the stretches of the journal that cannot be read.
+    pub(super) fn damage(&self, damage: &[Damage]) {
+        self.change(|state| state.damage = describe_damage(damage));
+    }
+
     /// Forgets everything, for a run that begins again.
     pub(super) fn clear(&self) {
         self.change(|state| {
@@ -158,51 +203,5 @@ impl SharedState {
                 ..RunState::default()
             };
         });
-    }
-}
-
-impl FollowObserver for SharedState {
-    fn event(&mut self, _entry: JournalEntry, event: &Event) {
-        self.change(|state| state.event(event));
-    }
-
-    fn result(&mut self, job: &Job, finished: &Finished) {
-        self.change(|state| state.result(job, finished));
-    }
-
-    fn read(&mut self, growth: Growth, _position: u64, damage: &[Damage]) {
-        if growth == Growth::Grown {
-            self.change(|state| {
-                state.damage = describe_damage(damage);
-            });
-        }
-    }
-}
-
-impl Watch<ProgressView> for SharedState {
-    fn progress(&mut self, view: &ProgressView, _: &dyn Fn() -> Snapshot) {
-        self.change(|state| state.progress = view.clone());
-    }
-
-    fn entered(&mut self, entry: &LogEntry) {
-        self.change(|state| drop(state.history.insert(entry.id, entry.clone())));
-    }
-
-    fn noted(&mut self, notes: &[String]) {
-        self.change(|state| state.notes = notes.to_vec());
-    }
-}
-
-impl Watch<StageView> for SharedState {
-    fn progress(&mut self, view: &StageView, _: &dyn Fn() -> Snapshot) {
-        self.change(|state| state.stage(view));
-    }
-
-    fn entered(&mut self, finding: &Finding) {
-        self.change(|state| state.findings.push(finding.clone()));
-    }
-
-    fn noted(&mut self, notes: &[String]) {
-        self.change(|state| state.notes = notes.to_vec());
     }
 }

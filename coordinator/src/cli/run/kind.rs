@@ -1,10 +1,10 @@
 //! Determines the kind of a run (calibration, diagnosis or identification) from its run folder; no other
 //! module does so.
 use super::{
-    calibration::{self, Calibration, calibrate},
-    diagnosis::{Diagnosis, diagnose},
+    calibration::{self, Calibration},
+    diagnosis::Diagnosis,
     folder::RunFolder,
-    identification::{self, Identification, identify},
+    identification::{self, Identification},
     manifest::{CALIBRATE, DIAGNOSE, IDENTIFY},
     opened::Run,
 };
@@ -20,7 +20,6 @@ use crate::cli::{
 use protocol::case::Case;
 use report::Report;
 use std::path::Path;
-use study::{Evaluator, ProgressView, StageView, Stop, Watch};
 
 /// Run of any kind (calibration, diagnosis or identification), opened from its run folder.
 pub(crate) enum AnyRun {
@@ -56,27 +55,6 @@ impl AnyRun {
             Self::Calibration(run) => &run.case,
             Self::Diagnosis(run) => &run.case,
             Self::Identification(run) => &run.case,
-        }
-    }
-
-    /// Repeats the study of the run on an evaluator that returns its recorded results.
-    ///
-    /// # Errors
-    /// If the evaluator lacks a result that the study requests, or the case has changed.
-    pub(crate) async fn replay<E: Evaluator>(
-        &self,
-        evaluator: &mut E,
-        watch: &mut (impl Watch<ProgressView> + Watch<StageView>),
-        stop: &mut Stop,
-    ) -> anyhow::Result<()> {
-        match self {
-            Self::Calibration(run) => calibrate(evaluator, run, watch, stop).await.map(drop),
-            Self::Diagnosis(run) => {
-                diagnose(evaluator, &run.manifest, &run.loaded()?, watch, stop).await
-            }
-            Self::Identification(run) => {
-                identify(evaluator, &run.manifest, &run.loaded()?, watch, stop).await
-            }
         }
     }
 

@@ -202,7 +202,7 @@ impl<S: RunIdentity> Run<S> {
         let overrides = Overrides {
             measured: manifest.replaced_records().map(ToOwned::to_owned),
         };
-        let mut loaded = self.as_begun(load_with_notes(&manifest.case_folder, &overrides)?)?;
+        let mut loaded = load_with_notes(&manifest.case_folder, &overrides)?;
         if let Some(start) = &manifest.start {
             loaded.take_effects(&start.effects);
         }
@@ -229,11 +229,6 @@ impl<S: RunIdentity> Run<S> {
                 manifest.case_folder.display()
             ),
         }
-    }
-
-    /// Removes from a loaded case the effects that this diagnosis has added to it since it was begun.
-    pub(crate) fn as_begun(&self, loaded: Loaded) -> anyhow::Result<Loaded> {
-        Ok(loaded.without_effects_from(&hash::case_hash(&self.case)?))
     }
 }
 

@@ -143,6 +143,11 @@ fn the_hidden_effect_is_named_and_added() {
     let case = fs::read_to_string(rig.file("case/case.toml")).unwrap();
     assert!(case.contains("id = \"dry_friction\""), "{case}");
     foreign_terms::check_folder(run.as_ref());
+    // the case has it now, and the command shows the run that found it
+    let again = rig.json(&["diagnose", "CASE", "--run", &run, "--add"]);
+    assert_eq!(again["effects"], object["effects"]);
+    let unchanged = fs::read_to_string(rig.file("case/case.toml")).unwrap();
+    assert_eq!(unchanged, case);
     // as the command itself advises: from what was found
     let (found, after) = (rig.path("diagnosis/calibrated.toml"), rig.path("after"));
     let from = ["--genes", &found, "--preset", "least-squares"];
