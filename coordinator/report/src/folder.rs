@@ -31,7 +31,7 @@ pub enum ReportError {
 ///
 /// # Errors
 /// [`ReportError::Write`] when a file cannot be written.
-pub(super) fn write_report(folder: &Path, report: &Report) -> Result<Vec<PathBuf>, ReportError> {
+pub fn write_report(folder: &Path, report: &Report) -> Result<Vec<PathBuf>, ReportError> {
     let mut written = vec![
         write(folder, "report.html", &page(report))?,
         write(

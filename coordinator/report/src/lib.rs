@@ -28,6 +28,7 @@ pub mod orthogonal;
 pub mod pumping_unit;
 pub mod scaling;
 mod section;
+pub mod sweep;
 pub mod table;
 pub mod words;
 mod write;
@@ -38,7 +39,7 @@ pub use data::{
 };
 pub use document::{Block, Figure, Report, Section, Table, page, text};
 pub use drawing::ModelReport;
-pub use folder::ReportError;
+pub use folder::{ReportError, write_report};
 pub use general::GenericReport;
 pub use machine_check::{ComparedChannel, MachineCheck};
 pub use section::{checks, condition_checks, derivatives, flags, genes, hosts, jobs, slot_time};

@@ -6,6 +6,6 @@ mod section;
 mod subject;
 mod write;
 
-pub use section::runs;
+pub(crate) use section::{level_names, runs};
 pub use subject::SweepInput;
-pub use write::{report, write};
+pub use write::report;

@@ -158,7 +158,7 @@ fn variance(tested: &TestResult, analysis: &Analysis) -> Option<Table> {
 }
 
 /// Builds the table of all runs with their factor levels.
-pub fn runs(case: &Case, factors: &[Factor], tried: &[TrialRun]) -> Table {
+pub(crate) fn runs(case: &Case, factors: &[Factor], tried: &[TrialRun]) -> Table {
     let heading = format!("best {}", objective_heading(case));
     let row = |run: &TrialRun| {
         Row::new(
@@ -199,7 +199,7 @@ fn all_runs(subject: &SweepInput<'_>) -> Section {
 }
 
 /// Lists each factor of the test with its level given by `levels`, as text.
-fn level_names(factors: &[Factor], levels: &[usize]) -> String {
+pub(crate) fn level_names(factors: &[Factor], levels: &[usize]) -> String {
     let one =
         |(factor, level): (&Factor, &usize)| format!("{} {}", factor.name, factor.levels[*level]);
     let words: Vec<String> = factors.iter().zip(levels).map(one).collect();

@@ -1,13 +1,5 @@
 //! `horsehead report`: writes the files of a finished run again, from its journal.
-use super::sweep;
-use crate::cli::{
-    argument::output::OutputChoice,
-    output::problem::EXIT_CODES,
-    run::{
-        folder::RunFolder, kind::AnyRun, manifest::RunIdentity as _, opened::Run,
-        orthogonal::Orthogonal, sweep_file::SweptFile,
-    },
-};
+use crate::cli::{argument::output::OutputChoice, output::problem::EXIT_CODES, run::kind::AnyRun};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -31,10 +23,5 @@ pub(super) struct Arguments {
 
 /// Reads the result of the run from its journal and writes its report files.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let (path, output) = (&arguments.run, arguments.output.output);
-    match RunFolder::at(path)?.head()?.kind.as_str() {
-        Orthogonal::KIND => sweep::orthogonal::show(&Run::open(path)?, output),
-        SweptFile::KIND => sweep::file::show(&Run::open(path)?, output),
-        _ => AnyRun::open(path)?.show(output),
-    }
+    AnyRun::open(&arguments.run)?.show(arguments.output.output)
 }

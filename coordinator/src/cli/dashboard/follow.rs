@@ -8,7 +8,6 @@ use crate::cli::output::calibration::report_run;
 use crate::cli::run::{
     folder::{MANIFEST, RESULT, RunFolder},
     kind::AnyRun,
-    manifest::{CALIBRATE, DIAGNOSE, IDENTIFY},
 };
 use dashboard::{Board, PageReader, Pages};
 use journal::{Growth, JournalFollower};
@@ -49,7 +48,7 @@ struct Shared {
     path: PathBuf,
     state: SharedState,
     run: Mutex<Option<OpenedRun>>,
-    /// Command of a run whose results alone are shown, such as a sweep.
+    /// Command of a run whose results alone are shown, such as requests of another program.
     other: Mutex<Option<String>>,
     ending: Mutex<Ending>,
     simulator: Simulator,
@@ -225,7 +224,7 @@ impl Shared {
         }
         let folder = RunFolder::at(&self.path)?;
         let kind = folder.head()?.kind;
-        let run = if [CALIBRATE, DIAGNOSE, IDENTIFY].contains(&kind.as_str()) {
+        let run = if AnyRun::KINDS.contains(&kind.as_str()) {
             let run = Arc::new(AnyRun::open(&self.path)?);
             *self.run.lock().unwrap_or_else(PoisonError::into_inner) = Some(OpenedRun {
                 run: Arc::clone(&run),
@@ -261,6 +260,11 @@ impl Shared {
                     }
                     refused = Some(journal.position());
                 }
+                // what was missing is being computed again
+                Growth::Grown if refused.is_some() => {
+                    self.end(Ending::default());
+                    refused = None;
+                }
                 Growth::Missing | Growth::Unchanged | Growth::Grown => {}
             }
             thread::sleep(INTERVAL);
@@ -285,7 +289,7 @@ impl Shared {
         Ok(growth)
     }
 
-    /// Returns the report of a finished run; of a run of another kind, such as a sweep, its results and workers.
+    /// Returns the report of a finished run; of a run of another kind, such as requests of another program, its results and workers.
     fn report(
         &self,
         folder: &RunFolder,

@@ -3,7 +3,10 @@
 use super::state::{RunState, WorkerState};
 use crate::cli::{
     output::calibration::history_point,
-    run::{calibration::Calibration, kind::AnyRun},
+    run::{
+        calibration::Calibration, kind::AnyRun, manifest::RunIdentity as _, orthogonal::Orthogonal,
+        sweep_file::SweptFile,
+    },
 };
 use discrepancy::laboratory::Finding;
 use report::{
@@ -34,16 +37,18 @@ pub(super) fn title(run: &AnyRun) -> String {
         AnyRun::Calibration(run) => format!("Calibration of {}", run.case.name),
         AnyRun::Diagnosis(run) => format!("Diagnosis of {}", run.case.name),
         AnyRun::Identification(run) => format!("Identifiability of {}", run.case.name),
+        AnyRun::Test(run) => format!("Orthogonal test of a search on {}", run.case.name),
+        AnyRun::Sweep(run) => format!("Sweep on {}", run.case.name),
     }
 }
 
-/// Returns the title of the page of a run of another kind, such as a sweep.
+/// Returns the title of the page of a run of another kind, such as requests of another program.
 pub(super) fn other_title(kind: &str, path: &Path) -> String {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     format!("{} of {name}", words::capitalised(kind))
 }
 
-/// Returns the sections of a run of another kind, such as a sweep: its results and workers.
+/// Returns the sections of a run of another kind, such as requests of another program: its results and workers.
 pub(super) fn other(kind: &str, state: &RunState) -> Vec<Section> {
     let facts = vec![
         Fact::code("command", format!("horsehead {kind}")),
@@ -84,6 +89,8 @@ pub(super) fn unfinished(
             workers(state),
         ],
         AnyRun::Identification(_) => vec![stage_progress(state), workers(state)],
+        AnyRun::Test(_) => other(Orthogonal::KIND, state),
+        AnyRun::Sweep(_) => other(SweptFile::KIND, state),
     }
 }
 

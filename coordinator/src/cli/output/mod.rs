@@ -6,4 +6,5 @@ pub(super) mod identification;
 pub(crate) mod object;
 pub(crate) mod problem;
 pub(super) mod progress;
+pub(super) mod sweep;
 pub(crate) mod terminal;

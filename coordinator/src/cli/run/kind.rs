@@ -1,12 +1,13 @@
-//! Determines the kind of a run (calibration, diagnosis or identification) from its run folder; no other
-//! module does so.
+//! Determines the kind of a run from its run folder; no other module does so.
 use super::{
     calibration::{self, Calibration},
     diagnosis::Diagnosis,
     folder::RunFolder,
     identification::{self, Identification},
-    manifest::{CALIBRATE, DIAGNOSE, IDENTIFY},
+    manifest::{CALIBRATE, DIAGNOSE, IDENTIFY, RunIdentity as _},
     opened::Run,
+    orthogonal::Orthogonal,
+    sweep_file::SweptFile,
 };
 use crate::cli::{
     argument::output::Output,
@@ -15,20 +16,34 @@ use crate::cli::{
         diagnosis::DiagnosisOutput,
         identification::{show as identified, subject as identification_data},
         problem::Problem,
+        sweep::{file_report, show_file, show_test, test_report},
     },
 };
 use protocol::case::Case;
 use report::Report;
 use std::path::Path;
 
-/// Run of any kind (calibration, diagnosis or identification), opened from its run folder.
+/// Run of any kind whose result can be shown, opened from its run folder.
 pub(crate) enum AnyRun {
     Calibration(Calibration),
     Diagnosis(Diagnosis),
     Identification(Identification),
+    /// Orthogonal test.
+    Test(Run<Orthogonal>),
+    /// Sweep of a file.
+    Sweep(Run<SweptFile>),
 }
 
 impl AnyRun {
+    /// Kinds of run whose result can be shown.
+    pub(crate) const KINDS: [&str; 5] = [
+        CALIBRATE,
+        DIAGNOSE,
+        IDENTIFY,
+        Orthogonal::KIND,
+        SweptFile::KIND,
+    ];
+
     /// Opens an existing run.
     ///
     /// # Errors
@@ -39,6 +54,8 @@ impl AnyRun {
             CALIBRATE => Ok(Self::Calibration(Run::open(path)?)),
             DIAGNOSE => Ok(Self::Diagnosis(Run::open(path)?)),
             IDENTIFY => Ok(Self::Identification(Run::open(path)?)),
+            Orthogonal::KIND => Ok(Self::Test(Run::open(path)?)),
+            SweptFile::KIND => Ok(Self::Sweep(Run::open(path)?)),
             other => Err(Problem {
                 message: format!("{} holds a run of `horsehead {other}`", path.display()),
                 remedy: "name the folder of a calibration, a diagnosis, an identification, a grid, a table or an orthogonal test; \
@@ -55,6 +72,8 @@ impl AnyRun {
             Self::Calibration(run) => &run.case,
             Self::Diagnosis(run) => &run.case,
             Self::Identification(run) => &run.case,
+            Self::Test(run) => &run.case,
+            Self::Sweep(run) => &run.case,
         }
     }
 
@@ -77,6 +96,8 @@ impl AnyRun {
                 let recorded = identification::recorded(run)?;
                 report::identification::report(&identification_data(run, &recorded, wall_s)?)
             }
+            Self::Test(run) => test_report(run)?,
+            Self::Sweep(run) => file_report(run)?,
         })
     }
 
@@ -93,6 +114,8 @@ impl AnyRun {
                 answer.print(output, &object)
             }
             Self::Identification(run) => identified(run, run.manifest.wall_s, output),
+            Self::Test(run) => show_test(run, output),
+            Self::Sweep(run) => show_file(run, output),
         }
     }
 }

@@ -24,7 +24,7 @@ fn shown(rig: &Rig, run: &str) -> BTreeMap<String, Vec<u8>> {
     let printed = ("printed".to_owned(), printed.into_bytes());
     let all: BTreeMap<String, Vec<u8>> = read.chain([printed]).collect();
     assert!(
-        all.contains_key("result.json") && all.len() >= 11,
+        all.contains_key("result.json") && all.contains_key("report.html") && all.len() >= 12,
         "{:?}",
         all.keys()
     );

@@ -4,20 +4,11 @@ use crate::cli::{
     argument::{
         case::{LoadedCase, case_folder, load_case},
         individuals::Individuals,
-        output::{Output, OutputChoice},
+        output::OutputChoice,
         workers::WorkersChoice,
     },
-    output::{
-        object::{
-            orthogonal::{GridOutput, runs_table},
-            scored::{self, IndividualsOutput},
-        },
-        problem::Problem,
-        progress::Display,
-        terminal,
-    },
+    output::{problem::Problem, progress::Display, sweep::show_file},
     run::{
-        folder::RESULT,
         hash,
         manifest::Manifest,
         name::RunName,
@@ -29,13 +20,9 @@ use crate::cli::{
 };
 use case::{document::Document, require_record};
 use clap::Args;
-use report::{orthogonal::runs, table};
 use search::space::Space;
 use std::path::{Path, PathBuf};
 use study::{Entry, Evaluator as _, Sweep, Watch as _, score_all};
-
-/// Name of the result table that a sweep writes into its run folder.
-const TABLE: &str = "sweep.csv";
 
 #[derive(Debug, Args)]
 pub(super) struct FileArguments {
@@ -65,7 +52,7 @@ pub(super) fn run(arguments: &FileArguments) -> anyhow::Result<()> {
         (FileContent::Grid(searches), _) => search(&session, &run, searches)?,
         (FileContent::Individuals(_), all) => score(&session, &run, &all)?,
     }
-    show(&run, arguments.output.output)
+    show_file(&run, arguments.output.output)
 }
 
 /// Creates or opens the run of a sweep, and reads the individuals if the file is a table; for a grid the list
@@ -174,33 +161,4 @@ fn score(session: &Session, run: &Run<SweptFile>, all: &Individuals) -> anyhow::
         }
         Ok(())
     })
-}
-
-/// Reads the result of a finished sweep from its run folder, writes its table and prints it.
-///
-/// # Errors
-/// If the sweep is not finished, its journal cannot be read, or a file cannot be written.
-pub(in crate::cli::command) fn show(run: &Run<SweptFile>, output: Output) -> anyhow::Result<()> {
-    let (path, case) = (run.expect_journal()?, &run.case);
-    let unreadable = |error| run.unreadable(error);
-    match &run.manifest.settings.holds {
-        FileContent::Grid(searches) => {
-            let tried = study::read_grid(&path).map_err(unreadable)?;
-            let object = GridOutput::new(&searches.factors, &tried);
-            run.folder
-                .write(TABLE, &runs_table(&searches.factors, &tried)?)?;
-            run.folder.write_json(RESULT, &object)?;
-            let shown = runs(case, &searches.factors, &tried);
-            terminal::print(output, || table::text(&shown, terminal::style()), &object)
-        }
-        FileContent::Individuals(_) => {
-            let space = Space::new(&case.unknowns)?;
-            let read = study::read_table(&path, |row| space.expand(row)).map_err(unreadable)?;
-            let object = IndividualsOutput::new(case, &read.names, &read.rows, &read.scores);
-            let text = scored::table(case, &read.names, &read.rows, &read.scores)?;
-            run.folder.write(TABLE, &text)?;
-            run.folder.write_json(RESULT, &object)?;
-            terminal::print(output, || text, &object)
-        }
-    }
 }

@@ -1,7 +1,7 @@
 //! `horsehead sweep`: runs many searches, or scores many individuals, in one resumable run.
-pub(super) mod file;
+mod file;
 mod grid;
-pub(super) mod orthogonal;
+mod orthogonal;
 mod scaling;
 
 use crate::cli::output::problem::EXIT_CODES;

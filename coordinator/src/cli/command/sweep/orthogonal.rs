@@ -4,18 +4,16 @@ use crate::cli::{
     argument::{
         case::{CaseChoice, LoadedCase},
         factor,
-        output::{Output, OutputChoice},
+        output::OutputChoice,
         settings::SettingsChoice,
         workers::WorkersChoice,
     },
     output::{
-        object::orthogonal::OrthogonalOutput,
         problem::{EXIT_CODES, Problem},
         progress::Display,
-        terminal,
+        sweep::show_test,
     },
     run::{
-        folder::RESULT,
         manifest::{Manifest, RunIdentity as _},
         name::RunName,
         opened::Run,
@@ -24,7 +22,6 @@ use crate::cli::{
         session::Session,
     },
 };
-use ::report::{orthogonal as report, text};
 use anyhow::Context as _;
 use case::require_record;
 use clap::{
@@ -218,23 +215,5 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         display.clear();
         Ok(dispatch.enter(&Entry::Tested(Box::new(tested?)))?)
     })?;
-    show(&run, arguments.output.output)
-}
-
-/// Reads the result of a finished orthogonal test from its run folder, writes its files and prints it.
-pub(in crate::cli::command) fn show(run: &Run<Orthogonal>, output: Output) -> anyhow::Result<()> {
-    let tested =
-        &study::read_test(&run.expect_journal()?).map_err(|error| run.unreadable(error))?;
-    let object = OrthogonalOutput::from(tested);
-    let subject = report::SweepInput {
-        case: &run.case,
-        tested,
-        origin: run.origin(String::new())?,
-    };
-    let files = report::write(run.folder.path(), &subject)?;
-    run.folder.write_json(RESULT, &object)?;
-    let page = files.first().map(|page| page.display().to_string());
-    terminal::tell(&format!("open {}", page.unwrap_or_default()));
-    let tables = || text(&report::report(&subject), terminal::style());
-    terminal::print(output, tables, &object)
+    show_test(&run, arguments.output.output)
 }
