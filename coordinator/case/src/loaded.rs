@@ -37,14 +37,17 @@ pub struct Loaded {
 }
 
 impl Loaded {
-    /// Returns whether the effects after the first `kept` were found by a diagnosis of the case with the content hash
-    /// `dataset`, as their provenance states.
-    pub fn has_effects_from(&self, kept: usize, dataset: &str) -> bool {
+    /// Returns the case as it was before effects were found in it: without the effects whose provenance
+    /// states `dataset`, the case's content hash, and without their unknowns.
+    #[must_use]
+    pub fn without_effects_from(mut self, dataset: &str) -> Self {
         let found = |effect: &CaseEffect| {
             let provenance = effect.provenance.as_ref();
             provenance.and_then(|p| p.dataset.as_deref()) == Some(dataset)
         };
-        self.effects.len() > kept && self.effects.iter().skip(kept).all(found)
+        self.effects.retain(|effect| !found(effect));
+        self.apply_effects();
+        self
     }
 
     /// Gives the case the effects of a gene file: effects that it lacks are added, and parameters that are not

@@ -48,7 +48,7 @@ impl Stage {
     }
 }
 
-/// Interim result of a diagnosis, for display: the suspects of the present model, and what it leaves of the record.
+/// Interim result of a diagnosis, a function of the results so far: the suspects of the present model, and what it leaves of the record.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Finding {
     /// Identifiers of the effects that the present model has in addition to the case's own.
@@ -98,7 +98,7 @@ pub trait Laboratory {
         f64::INFINITY
     }
 
-    /// Receives an interim result of the diagnosis, for display only.
+    /// Receives an interim result of the diagnosis, which has no influence on it.
     ///
     /// # Errors
     /// If the laboratory keeps interim results and cannot keep this one.

@@ -1,7 +1,7 @@
 //! Whole calibration: the recommended individual, the search, and the comparison of both individuals; and the same
 //! result read from a journal.
 use super::{
-    calibrate::{Calibrated, calibrate, entry},
+    calibrate::{Calibrated, MIN_FAILED_EVALUATIONS, all_failed, calibrate, entry},
     compare::{CompareRequest, Compared, ComparedCurves, PICTURES, compare},
     entry::Entry,
     error::StudyError,
@@ -152,6 +152,12 @@ impl CalibrationReader {
     /// Returns the evaluations so far.
     pub const fn log(&self) -> &EvaluationLog {
         &self.log
+    }
+
+    /// Returns why the search has ended without a result; `None` if an individual completed, or too few were evaluated.
+    pub fn failure(&self) -> Option<StudyError> {
+        let is_begun = self.log.len() >= MIN_FAILED_EVALUATIONS;
+        (is_begun && self.log.failed() == self.log.len()).then(|| all_failed(&self.log))
     }
 
     /// Returns what was simulated of an individual of the comparison under a condition; `None` if it is none, or its curves

@@ -19,7 +19,7 @@ impl Evaluator for Dispatch {
         let entry = wire::encode(entry).map_err(|error| EvaluatorError {
             message: error.to_string(),
             help: None,
-            may_go_on: false,
+            can_go_on: false,
         })?;
         Ok(self.record(entry)?)
     }
@@ -62,7 +62,7 @@ impl From<DispatchError> for EvaluatorError {
         Self {
             message: error.to_string(),
             help: of_program.then(|| PROGRAM_REMEDY.to_owned()),
-            may_go_on: !differs,
+            can_go_on: !differs,
         }
     }
 }

@@ -14,7 +14,7 @@ pub struct EvaluatorError {
     /// Remedy for the evaluator's error, if there is one.
     pub help: Option<String>,
     /// Whether a later session may add results to those that the run has.
-    pub may_go_on: bool,
+    pub can_go_on: bool,
 }
 
 impl fmt::Display for EvaluatorError {

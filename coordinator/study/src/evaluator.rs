@@ -1,4 +1,4 @@
-//! Interface between a study and the evaluator of its jobs: submission, results, and worker status.
+//! Interface between a study and the evaluator of its jobs: submission, results, entries, and the state of workers.
 use super::entry::Entry;
 use super::error::{EvaluatorError, StudyError};
 use super::job_number::JobNumbers;

@@ -354,8 +354,11 @@ fn a_parameter_with_an_interval_to_search_is_a_gene() {
     assert_eq!((gene.unit.as_str(), gene.scale), ("N.m", Scale::Linear));
     assert_eq!((gene.lower, gene.start, gene.upper), (-1.0, 9.0, 20.0));
     assert_eq!(searched.case.effects, fixed.case.effects);
-    assert!(searched.has_effects_from(0, "this one") && !searched.has_effects_from(1, "this one"));
-    assert!(!searched.has_effects_from(0, "another one"));
+    let other = searched.clone().without_effects_from("another one");
+    assert_eq!(other, searched);
+    let without = searched.without_effects_from("this one").case;
+    assert_eq!(without.unknowns, fixed.case.unknowns);
+    assert!(without.effects.is_empty());
 }
 
 /// Checks that Eq. 3 and Eq. 5 may replace recommended values and are evaluated in the units of the genes.

@@ -259,17 +259,17 @@ impl<L: CoordinatorEnd> Engine<L> {
 
     /// Answers a request from the control socket, draining workers as requested.
     fn ask(&mut self, question: &ControlRequest) -> ControlReply {
-        let core = self.coordination.core();
-        let mut workers = core.worker_reports(self.begun.elapsed());
         let own_host = rustix::system::uname();
-        for (id, worker) in &mut workers {
-            for held in &mut worker.jobs {
-                held.job = self.coordination.submitted_id(JobId(held.job)).0;
-            }
-            let name = self.link.owner(*id);
-            worker.name = name.unwrap_or_else(|| NO_CERTIFICATE.to_owned());
-            worker.local = worker.host == own_host.nodename().to_string_lossy()
-                && (self.workers.as_ref()).is_some_and(|own| own.has_started(worker.pid));
+        let named = |id: WorkerId, host: &str, pid: u32| {
+            let name = self.link.owner(id);
+            let is_local = host == own_host.nodename().to_string_lossy()
+                && (self.workers.as_ref()).is_some_and(|own| own.has_started(pid));
+            (name.unwrap_or_else(|| NO_CERTIFICATE.to_owned()), is_local)
+        };
+        let core = self.coordination.core();
+        let mut workers = core.worker_reports(self.begun.elapsed(), named);
+        for held in workers.iter_mut().flat_map(|(_, worker)| &mut worker.jobs) {
+            held.job = self.coordination.submitted_id(JobId(held.job)).0;
         }
         let (drains, reply) = worker_control::answer(question, workers);
         for (worker, how) in drains {

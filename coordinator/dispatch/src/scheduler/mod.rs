@@ -44,7 +44,7 @@ mod stragglers;
 mod tests;
 mod times;
 mod unclaimed_results;
-mod worker_status;
+mod worker_report;
 
 pub use completed::Completed;
 pub use input::{Command, Drain, Input};
@@ -53,4 +53,4 @@ pub use notice::{Notice, StopReason};
 pub use policy::{PAUSE_LIMIT, Policy};
 pub use snapshot::Snapshot;
 pub use state::{Core, CoreOptions};
-pub use worker_status::{HeldJob, WorkerPhase, WorkerReport};
+pub use worker_report::{HeldJob, WorkerPhase, WorkerReport};

@@ -1,9 +1,11 @@
 //! Job sources of a simulated cluster: generations, or a search.
 use crate::runtime::{anticipated_parts, part_count};
-use journal::job_range::COMPARISONS;
 use protocol::job::{Job, Outcome};
 use search::strategy::{EvaluationResult, Proposal, Purpose, Residual, Strategy};
 use std::{cell::RefCell, collections::BTreeMap, rc::Rc};
+
+/// Bit that the numbers of anticipated jobs and of parts of divided jobs have and those of proposals do not.
+const PART: u64 = 1 << 40;
 
 /// Builds a job of kind `Nothing`, identified by its number.
 pub fn job(n: u64) -> Job {
@@ -104,7 +106,7 @@ pub struct SimulatedSearch<'a> {
     /// Numbers of the jobs of anticipated individuals, by their genes (as bits) and by whether their
     /// derivatives are computed.
     anticipated: BTreeMap<(Vec<u64>, bool), Vec<u64>>,
-    /// Number of numbers with the bit [`COMPARISONS`] given so far.
+    /// Number of numbers with the bit [`PART`] given so far.
     part_numbers: u64,
     log: blake3::Hasher,
 }
@@ -156,7 +158,7 @@ impl<'a> SimulatedSearch<'a> {
     fn new_numbers(&mut self, purpose: Purpose, parts: usize) -> Vec<u64> {
         let columns = self.columns(purpose).max(1);
         let count = columns.div_ceil(columns.div_ceil(parts.max(1))) as u64;
-        let first = COMPARISONS | self.part_numbers;
+        let first = PART | self.part_numbers;
         self.part_numbers += count;
         let numbers: Vec<u64> = (first..first + count).collect();
         self.set_factors(&numbers, purpose, parts);

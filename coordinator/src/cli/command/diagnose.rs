@@ -4,8 +4,7 @@ use crate::cli::{
     argument::{case::case_folder, output::OutputChoice, workers::WorkersChoice},
     output::{diagnosis::DiagnosisOutput, problem::EXIT_CODES, progress::StageDisplay, terminal},
     run::{
-        diagnosis::{DiagnosisSettings, diagnose},
-        kind::AnyRun,
+        diagnosis::{Diagnosis, DiagnosisSettings, diagnose, recorded},
         manifest::DIAGNOSE,
         opened::Run,
         session::Session,
@@ -74,12 +73,26 @@ pub(super) struct Arguments {
 /// Runs the diagnosis from the measured records to the report.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let session = Session::begin(&arguments.workers);
-    let target = Target::read(
+    let mut target = Target::read(
         &arguments.target,
         arguments.measured.as_deref(),
         arguments.genes.as_deref(),
     )?;
     let seed = target.seed(arguments.seed);
+    let path = match &arguments.run {
+        Some(path) => path.clone(),
+        // after --add the case has what the run found
+        None => match target.earlier_path(DIAGNOSE, seed)? {
+            Some(earlier) => earlier,
+            None => target.run_path(DIAGNOSE, seed)?,
+        },
+    };
+    let stated = target.loaded.effects.len();
+    if let Ok(earlier) = Diagnosis::open(&path) {
+        target = target.without_additions_of(&earlier)?;
+    }
+    let has_own = target.loaded.effects.len() < stated;
+    terminal::note(&target.loaded.notes);
     let settings = DiagnosisSettings {
         thresholds: Thresholds {
             rounds: usize::from(arguments.rounds),
@@ -89,34 +102,37 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         },
         differences: arguments.differences,
     };
-    let file = target.folder.join("case.toml");
-    let given = arguments.run.as_deref();
-    // after --add the case has what the run found
-    if let Some(finder) = target.finder(given, (seed, &settings))? {
-        terminal::tell(&format!(
-            "{} has what {} found already",
-            file.display(),
-            finder.folder.path().display()
-        ));
-        return AnyRun::Diagnosis(finder).show(arguments.output.output);
-    }
-    let path = match given {
-        Some(path) => path.to_owned(),
-        None => target.run_path(DIAGNOSE, seed)?,
-    };
-    terminal::note(&target.loaded.notes);
     let manifest = target.manifest(seed, settings)?;
     let run = Run::begin(&path, manifest, target.loaded.case.clone())?;
-    session.work(&run, async |dispatch, stop| {
-        let mut display = StageDisplay::new();
-        let found = diagnose(dispatch, &run.manifest, &target.loaded, &mut display, stop).await;
-        display.clear();
-        found
-    })?;
-    let answer = DiagnosisOutput::read(&run, session.wall_s(&run))?;
+    let answer = if is_complete(&run) {
+        let path = run.folder.path().display();
+        terminal::tell(&format!(
+            "{path} is finished: its result is read from its journal"
+        ));
+        DiagnosisOutput::read(&run, run.manifest.wall_s)?
+    } else {
+        session.work(&run, async |dispatch, stop| {
+            let mut display = StageDisplay::new();
+            let found = diagnose(dispatch, &run.manifest, &target.loaded, &mut display, stop).await;
+            display.clear();
+            found
+        })?;
+        DiagnosisOutput::read(&run, session.wall_s(&run))?
+    };
     let object = answer.write()?;
-    if arguments.add {
+    let file = target.folder.join("case.toml");
+    if arguments.add && has_own {
+        terminal::tell(&format!(
+            "{} has what this run found already",
+            file.display()
+        ));
+    } else if arguments.add {
         answer.add(&file)?;
     }
     answer.print(arguments.output.output, &object)
+}
+
+/// Returns whether a run has a result and an undamaged journal, so that nothing is left to compute.
+fn is_complete(run: &Diagnosis) -> bool {
+    run.folder.is_finished() && recorded(run).is_ok_and(|recorded| recorded.damage.is_empty())
 }

@@ -138,7 +138,7 @@ fn ended(verdict: &Verdict) -> anyhow::Result<()> {
     Err(EvaluatorError {
         message: format!("the simulation {}", words::verdict(verdict)),
         help: Some(help.to_owned()),
-        may_go_on: false,
+        can_go_on: false,
     }
     .into())
 }

@@ -156,6 +156,8 @@ fn stamp(path: &Path) -> (u64, u64) {
 
 /// State of a finished run whose journal lacks results.
 const INCOMPLETE: &str = "incomplete";
+/// State of an unfinished run on which no process works.
+const STOPPED: &str = "stopped";
 /// State of a run whose result is written.
 const FINISHED: &str = "finished";
 
@@ -236,7 +238,7 @@ impl Shared {
             None
         };
         let mut journal = JournalFollower::new(&folder.file(journal::FILE));
-        // position up to which no report could be made
+        // journal and result of which no report could be made
         let mut refused = None;
         loop {
             let was_finished = folder.is_finished();
@@ -250,7 +252,7 @@ impl Shared {
                 Growth::Missing if had_begun || !folder.is_begun() => {
                     anyhow::bail!("the run folder was deleted")
                 }
-                Growth::Unchanged if was_finished && refused != Some(journal.position()) => {
+                Growth::Unchanged if was_finished && refused != Some(self.ended_as(&journal)) => {
                     match self.report(&folder, &kind, run.as_deref()) {
                         Ok(report) => return Ok(report),
                         Err(error) => self.end(Ending {
@@ -258,7 +260,7 @@ impl Shared {
                             error: Some(format!("{error:#}")),
                         }),
                     }
-                    refused = Some(journal.position());
+                    refused = Some(self.ended_as(&journal));
                 }
                 // what was missing is being computed again
                 Growth::Grown if refused.is_some() => {
@@ -269,6 +271,11 @@ impl Shared {
             }
             thread::sleep(INTERVAL);
         }
+    }
+
+    /// Returns the position up to which the journal was read, and the stamp of the result file.
+    fn ended_as(&self, journal: &JournalFollower) -> (u64, (u64, u64)) {
+        (journal.position(), stamp(&self.path.join(RESULT)))
     }
 
     /// Reads what was appended to the journal. Before the first event it forgets what was known, and why the run could
@@ -358,7 +365,9 @@ impl Shared {
                     "Results of this run are missing from its journal. The page shows what is left; the command that \
                      began the run computes them again.",
                 );
-                let error = ending.error.as_deref().or(lacking);
+                let failed = (word == STOPPED).then(|| state.reading.failure()).flatten();
+                let failed = failed.map(|error| error.to_string());
+                let error = ending.error.as_deref().or(lacking).or(failed.as_deref());
                 let mut page = vec![sections::notices(&state, error)];
                 match (&ending.report, &run) {
                     (Some(report), _) => page.extend(report.sections.iter().cloned()),
@@ -408,7 +417,7 @@ impl Shared {
         } else if has_grown_lately(&self.path) {
             "running".to_owned()
         } else {
-            "stopped".to_owned()
+            STOPPED.to_owned()
         }
     }
 }

@@ -122,7 +122,11 @@ fn search_progress(run: &Calibration, state: &RunState) -> Section {
     if generations > 1 {
         facts.push(Fact::new(
             "generation or stage",
-            format!("{} of {generations}", state.generation),
+            format!(
+                "{} of {}",
+                state.generation,
+                generations.max(state.generation)
+            ),
         ));
     }
     if let Some(best) = state.best() {
@@ -136,7 +140,8 @@ fn search_progress(run: &Calibration, state: &RunState) -> Section {
         ));
     }
     facts.push(Fact::new("did not complete", count(failed)));
-    facts.extend(time_left(state, planned.saturating_sub(completed)));
+    let ahead = planned.saturating_sub(completed);
+    facts.extend((ahead > 0).then(|| time_left(state, ahead)).flatten());
     facts.push(Fact::code("command", run.manifest.command.clone()));
     progress(vec![Block::Facts(facts)])
 }
@@ -170,9 +175,7 @@ const fn progress(blocks: Vec<Block>) -> Section {
 /// Returns the section on the stages of a diagnosis or identification.
 fn stage_progress(state: &RunState) -> Section {
     let Some(present) = state.stage else {
-        return progress(vec![Block::Text(
-            "Waiting for the first result.".to_owned(),
-        )]);
+        return progress(vec![Block::Text("No stage has begun yet.".to_owned())]);
     };
     let rows = state.budget.iter().map(|(stage, budget)| {
         let own = state.stages.get(stage).copied();
@@ -206,7 +209,7 @@ fn stage_progress(state: &RunState) -> Section {
 
 /// Returns the section on the gap as it closes: one row for each model that was tested.
 fn gaps(state: &RunState) -> Section {
-    let mut models: Vec<&Finding> = state.findings.iter().collect();
+    let mut models: Vec<&Finding> = state.findings.values().collect();
     models.dedup_by(|one, other| one.added == other.added);
     let first = models.first().map_or(0.0, |finding| finding.gap);
     let rows = models.iter().map(|finding| {
@@ -248,19 +251,24 @@ fn p_value(p: f64) -> String {
 
 /// Returns the section on the suspects of the last model that was tested.
 fn suspects(state: &RunState) -> Section {
-    let rows = state.findings.last().into_iter().flat_map(|finding| {
-        finding.suspects.iter().map(|suspect| {
-            let gain = suspect.gain.map(|gain| fixed(gain, 1));
-            Row::new(
-                suspect.id.as_str(),
-                [
-                    suspect.title.clone(),
-                    p_value(suspect.p_value),
-                    gain.unwrap_or_else(|| MISSING.to_owned()),
-                ],
-            )
-        })
-    });
+    let rows = state
+        .findings
+        .values()
+        .last()
+        .into_iter()
+        .flat_map(|finding| {
+            finding.suspects.iter().map(|suspect| {
+                let gain = suspect.gain.map(|gain| fixed(gain, 1));
+                Row::new(
+                    suspect.id.as_str(),
+                    [
+                        suspect.title.clone(),
+                        p_value(suspect.p_value),
+                        gain.unwrap_or_else(|| MISSING.to_owned()),
+                    ],
+                )
+            })
+        });
     let table = Table::new(
         "Effects that the record may speak for",
         [

@@ -1,4 +1,5 @@
 //! What is known of a run that is followed: a fold over its journal.
+use crate::cli::run::manifest::{CALIBRATE, DIAGNOSE, IDENTIFY};
 use discrepancy::{
     baseline::budget::cost,
     laboratory::{Finding, Stage},
@@ -6,9 +7,13 @@ use discrepancy::{
 use journal::account::{AccountBuilder, Costs, JobCost};
 use journal::event::{Asked, Event, Finished};
 use journal::{Answers, Damage, describe_damage};
-use protocol::{id::WorkerId, job::Outcome, wire};
+use protocol::{
+    id::{JobId, WorkerId},
+    job::Outcome,
+    wire,
+};
 use std::{
-    collections::BTreeMap,
+    collections::{BTreeMap, BTreeSet},
     sync::{Arc, Mutex, MutexGuard, PoisonError},
 };
 use study::{CalibrationReader, Entry, LogEntry};
@@ -51,10 +56,12 @@ pub(super) struct RunState {
     pub(super) opened_unix_ms: u64,
     /// Number of results in the journal.
     pub(super) results: u64,
+    /// Command that began the run.
+    kind: String,
     answers: Answers,
     /// Evaluations of a calibration, and what it simulated for its tables.
     pub(super) reading: CalibrationReader,
-    /// Generation of the last individual that a search requested.
+    /// Highest generation of an individual that a search requested.
     pub(super) generation: u32,
     /// Planned generations and evaluations of a calibration.
     pub(super) plan: (u32, u64),
@@ -65,10 +72,12 @@ pub(super) struct RunState {
     pub(super) budget: Vec<(Stage, f64)>,
     /// Progress of the stages that were begun.
     pub(super) stages: BTreeMap<Stage, StageState>,
-    /// Stage of the last request.
+    /// Stage of the last request that was not made before.
     pub(super) stage: Option<Stage>,
-    /// Interim results of a diagnosis, in order.
-    pub(super) findings: Vec<Finding>,
+    /// Jobs of the stages; a later process of the run requests those without a result again.
+    stage_jobs: BTreeSet<JobId>,
+    /// Interim results of a diagnosis by the numbers of their entries.
+    pub(super) findings: BTreeMap<u64, Finding>,
     pub(super) notes: Vec<String>,
 }
 
@@ -105,30 +114,54 @@ impl RunState {
             Event::Asked(asked) => self.asked(asked),
             Event::Finished(finished) => self.finished(finished),
             // one that cannot be read is told of when the run is over
-            Event::Found { entry, .. } => {
+            Event::Found { number, entry } => {
                 if let Ok(entry) = wire::decode(entry) {
-                    self.found(entry);
+                    self.found(*number, entry);
                 }
             }
-            Event::Begun { .. } | Event::Proved { .. } | Event::Accounted(_) => {}
+            Event::Begun { header, .. } => self.kind.clone_from(&header.kind),
+            Event::Proved { .. } | Event::Accounted(_) => {}
+        }
+        if !self.is_calibration() && !self.has_stages() {
+            return;
         }
         if let Some((asked, finished)) = self.answers.pair(event) {
-            let stage = stage_of(&asked).and_then(|stage| self.stages.get_mut(&stage));
-            if let Some(stage) = stage {
+            let stage = self.stage_of(&asked);
+            if let Some(stage) = stage.and_then(|stage| self.stages.get_mut(&stage)) {
                 stage.done += 1;
             }
-            self.reading.answer(asked, finished);
+            if self.is_calibration() {
+                self.reading.answer(asked, finished);
+            }
         }
     }
 
+    fn is_calibration(&self) -> bool {
+        self.kind == CALIBRATE
+    }
+
+    fn has_stages(&self) -> bool {
+        [DIAGNOSE, IDENTIFY].contains(&self.kind.as_str())
+    }
+
+    /// Returns the stage of a diagnosis or identification that requested a job; `None` for other jobs.
+    fn stage_of(&self, asked: &Asked) -> Option<Stage> {
+        let all = Stage::ALL.into_iter().filter(|_| self.has_stages());
+        let mut of_job = all.filter(|stage| stage.name() == asked.reason.purpose);
+        of_job.next()
+    }
+
     fn asked(&mut self, asked: &Asked) {
-        if let Some(stage) = stage_of(asked) {
+        if let Some(stage) = self.stage_of(asked)
+            && self.stage_jobs.insert(asked.job)
+        {
             let own = self.stages.entry(stage).or_default();
             own.asked += 1;
             own.spent += cost(asked.columns as usize);
             self.stage = Some(stage);
         }
-        self.generation = asked.reason.generation.unwrap_or(self.generation);
+        let generation = asked.reason.generation.unwrap_or_default();
+        self.generation = self.generation.max(generation);
     }
 
     fn finished(&mut self, finished: &Finished) {
@@ -143,14 +176,14 @@ impl RunState {
         own.busy_s += finished.cost.wall_s();
     }
 
-    fn found(&mut self, entry: Entry) {
+    fn found(&mut self, number: u64, entry: Entry) {
         match entry {
             Entry::Planned {
                 generations,
                 evaluations,
             } => self.plan = (generations, evaluations),
             Entry::Budgeted(budget) => self.budget = budget,
-            Entry::Interim(finding) => self.findings.push(finding),
+            Entry::Interim(finding) => drop(self.findings.insert(number, finding)),
             Entry::Noted(notes) => self.notes = notes,
             Entry::Record(_)
             | Entry::Calibrated { .. }
@@ -162,12 +195,6 @@ impl RunState {
             | Entry::Table { .. } => {}
         }
     }
-}
-
-/// Returns the stage of a diagnosis or identification that requested a job; `None` for other jobs.
-fn stage_of(asked: &Asked) -> Option<Stage> {
-    let mut all = Stage::ALL.into_iter();
-    all.find(|stage| stage.name() == asked.reason.purpose)
 }
 
 /// State of a run, shared between the thread that follows it and the one that renders it.
@@ -203,5 +230,105 @@ impl SharedState {
                 ..RunState::default()
             };
         });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use journal::event::{JobReason, RunHeader};
+    use protocol::{
+        id::{AttemptId, ContentHash, RunId},
+        job::{Failure, Job},
+        message::{Attempt, Cost},
+    };
+
+    fn begun(kind: &str) -> RunState {
+        let mut state = RunState::default();
+        state.event(Event::Begun {
+            run: RunId(1),
+            header: RunHeader {
+                kind: kind.to_owned(),
+                case: ContentHash::of(&[]),
+                settings: String::new(),
+            },
+        });
+        state
+    }
+
+    fn asked(job: u64, purpose: &str, generation: Option<u32>) -> Event {
+        let own = Job::Nothing {
+            payload: Vec::new(),
+            reply_bytes: 0,
+            delay_ms: 0,
+        };
+        let reason = JobReason {
+            purpose: purpose.to_owned(),
+            generation,
+        };
+        Event::Asked(Box::new(Asked::new(JobId(job), &own, reason)))
+    }
+
+    fn finished(job: u64) -> Event {
+        Event::Finished(Box::new(Finished {
+            attempt: Attempt {
+                job: JobId(job),
+                attempt: AttemptId::COORDINATOR,
+            },
+            work: ContentHash::of(&[]),
+            worker: None,
+            cost: Cost::default(),
+            outcome: Outcome::Failed(Failure::Refused {
+                reason: "gone".to_owned(),
+            }),
+        }))
+    }
+
+    fn interim(number: u64, gap: f64) -> Event {
+        let finding = Finding {
+            added: Vec::new(),
+            gap,
+            suspects: Vec::new(),
+        };
+        let entry = wire::encode(&Entry::Interim(finding)).unwrap();
+        Event::Found {
+            number,
+            entry: entry.into(),
+        }
+    }
+
+    #[test]
+    fn a_job_that_is_requested_again_counts_once() {
+        let mut state = begun(DIAGNOSE);
+        for job in [1, 2, 1] {
+            state.event(asked(job, Stage::Test.name(), None));
+        }
+        state.event(asked(3, Stage::Refit.name(), None));
+        state.event(asked(2, Stage::Test.name(), None));
+        state.event(finished(1));
+        let test = state.stages[&Stage::Test];
+        assert_eq!((test.asked, test.done), (2, 1));
+        assert_eq!(state.stage, Some(Stage::Refit));
+    }
+
+    #[test]
+    fn entries_stand_in_the_order_of_their_numbers_and_generations_do_not_fall() {
+        let mut state = begun(DIAGNOSE);
+        state.event(interim(5, 0.1));
+        state.event(interim(4, 0.5));
+        let gaps: Vec<f64> = state.findings.values().map(|own| own.gap).collect();
+        assert_eq!(gaps, [0.5, 0.1]);
+        let mut state = begun(CALIBRATE);
+        state.event(asked(7, "mutate", Some(3)));
+        state.event(asked(2, "mutate", Some(0)));
+        assert_eq!(state.generation, 3);
+    }
+
+    #[test]
+    fn results_of_a_sweep_are_counted_and_not_kept() {
+        let mut state = begun("sweep");
+        state.event(asked(1 << 41, "score", None));
+        state.event(finished(1 << 41));
+        assert_eq!((state.results, state.answers.results()), (1, 0));
     }
 }

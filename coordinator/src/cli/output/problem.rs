@@ -113,7 +113,7 @@ mod tests {
         let lost = EvaluatorError {
             message: "no worker".into(),
             help: Some("start one".into()),
-            may_go_on: true,
+            can_go_on: true,
         };
         let error = anyhow::Error::from(StudyError::from(lost));
         assert_eq!(describe(&error), "error: no worker\nhelp: start one");

@@ -54,7 +54,7 @@ impl<S: RunIdentity> Run<S> {
     }
 
     /// Prepares a new run in a vacant folder, or resumes the same run in its folder. Writes nothing:
-    /// [`Run::remember`] does so once the journal has been accepted.
+    /// [`Run::save`] does so once the journal has been accepted.
     ///
     /// # Errors
     /// If the folder holds another run or unrelated files.
@@ -202,7 +202,7 @@ impl<S: RunIdentity> Run<S> {
         let overrides = Overrides {
             measured: manifest.replaced_records().map(ToOwned::to_owned),
         };
-        let mut loaded = load_with_notes(&manifest.case_folder, &overrides)?;
+        let mut loaded = self.as_begun(load_with_notes(&manifest.case_folder, &overrides)?)?;
         if let Some(start) = &manifest.start {
             loaded.take_effects(&start.effects);
         }
@@ -229,6 +229,11 @@ impl<S: RunIdentity> Run<S> {
                 manifest.case_folder.display()
             ),
         }
+    }
+
+    /// Removes from a loaded case the effects that this diagnosis has added to it since it was begun.
+    pub(crate) fn as_begun(&self, loaded: Loaded) -> anyhow::Result<Loaded> {
+        Ok(loaded.without_effects_from(&hash::case_hash(&self.case)?))
     }
 }
 

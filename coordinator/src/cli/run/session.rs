@@ -121,7 +121,7 @@ impl Session {
 /// interruption or an evaluator error, false if the case or the workers are at fault.
 fn can_go_on(error: &anyhow::Error) -> bool {
     match error.downcast_ref::<StudyError>() {
-        Some(StudyError::Evaluator(error)) => error.may_go_on,
+        Some(StudyError::Evaluator(error)) => error.can_go_on,
         study => matches!(study, Some(StudyError::Interrupted)),
     }
 }

@@ -2,10 +2,9 @@
 //! parameters are used.
 use super::{
     calibration::Calibration,
-    diagnosis::{Diagnosis, DiagnosisSettings},
+    diagnosis::Diagnosis,
     folder::{GENES, RunFolder},
-    hash,
-    manifest::{CALIBRATE, DIAGNOSE, Manifest, RunIdentity, Start},
+    manifest::{CALIBRATE, Manifest, RunIdentity, Start},
     name::RunName,
 };
 use crate::cli::output::problem::Problem;
@@ -87,31 +86,19 @@ impl Target {
         self.path_of(command, seed, &self.loaded.case)
     }
 
-    /// Returns the diagnosis of this target that found the last effects of the case: that in the folder `given`, or else one
-    /// in its default folder. `None` if there is none with this seed and these settings.
-    pub(crate) fn finder(
-        &self,
-        given: Option<&Path>,
-        (seed, settings): (u64, &DiagnosisSettings),
-    ) -> anyhow::Result<Option<Diagnosis>> {
-        for kept in 0..self.loaded.case.effects.len() {
+    /// Returns the default path of the run folder of an earlier diagnosis of this target that added the last effects of
+    /// the case; `None` if there is none.
+    pub(crate) fn earlier_path(&self, command: &str, seed: u64) -> anyhow::Result<Option<PathBuf>> {
+        let stated = &self.loaded.case.effects;
+        for kept in 0..stated.len() {
             let mut case = self.loaded.case.clone();
             case.effects.truncate(kept);
-            let path = match given {
-                Some(path) => path.to_owned(),
-                None => self.path_of(DIAGNOSE, seed, &case)?,
-            };
+            let path = self.path_of(command, seed, &case)?;
             let Ok(earlier) = Diagnosis::open(&path) else {
                 continue;
             };
-            let Manifest {
-                seed: of_run,
-                settings: own,
-                ..
-            } = &earlier.manifest;
-            let dataset = hash::case_hash(&earlier.case)?;
-            if self.loaded.has_effects_from(kept, &dataset) && (*of_run, own) == (seed, settings) {
-                return Ok(Some(earlier));
+            if earlier.as_begun(self.loaded.clone())?.effects.len() == kept {
+                return Ok(Some(path));
             }
         }
         Ok(None)
@@ -145,6 +132,30 @@ impl Target {
             effects: self.loaded.effects.clone(),
             ..Manifest::new(&self.folder, seed, settings)?
         })
+    }
+
+    /// Removes the effects that an earlier session of this diagnosis added to the case, and restricts the
+    /// start to the remaining unknowns.
+    pub(crate) fn without_additions_of(mut self, earlier: &Diagnosis) -> anyhow::Result<Self> {
+        let stated = self.loaded.case.unknowns.clone();
+        self.loaded = earlier.as_begun(self.loaded)?;
+        let left = &self.loaded.case.unknowns;
+        let kept = |values: Vec<f64>| {
+            let pairs = stated.iter().zip(values);
+            let kept = pairs.filter(|(gene, _)| left.contains(gene));
+            kept.map(|(_, value)| value).collect()
+        };
+        if let Some(start) = &self.start {
+            // they were told of a case that had the additions
+            let of_start =
+                |path: &Path| std::path::absolute(path).is_ok_and(|path| path == start.file);
+            self.loaded.notes.retain(|note| !of_start(&note.path));
+        }
+        self.start = self.start.map(|start| Start {
+            genes: kept(start.genes),
+            ..start
+        });
+        Ok(self)
     }
 }
 

@@ -1,11 +1,16 @@
 //! Tests of draining workers.
 use super::*;
-use crate::scheduler::WorkerPhase;
+use crate::scheduler::{WorkerPhase, WorkerReport};
 
 fn drain(scene: &mut Scene, worker: u64, now: bool, end: bool) {
     let worker = WorkerId(worker);
     let how = Drain { now, end };
     scene.tell(Input::Drain { worker, how });
+}
+
+fn reports(scene: &Scene) -> Vec<(WorkerId, WorkerReport)> {
+    let named = |_, _: &str, _| (String::new(), false);
+    scene.core.worker_reports(scene.now, named)
 }
 
 /// Returns whether a worker was ordered to end since the last call.
@@ -26,7 +31,7 @@ fn a_drained_worker_finishes_what_it_holds_and_gets_no_more() {
     }
     assert_eq!(scene.given(), []);
     assert_eq!(scene.cancelled, []);
-    let (_, worker) = &scene.core.worker_reports(scene.now)[0];
+    let (_, worker) = &reports(&scene)[0];
     assert_eq!(worker.state, WorkerPhase::Drained);
     assert!(worker.jobs.is_empty());
     assert_eq!(worker.done, given.len() as u64);
@@ -74,9 +79,9 @@ fn a_worker_that_is_to_end_is_told_so_once_it_holds_nothing_and_whenever_it_come
     assert!(!told_to_end(&mut scene, 1), "it holds a job");
     scene.finish(1, attempt);
     assert!(told_to_end(&mut scene, 1));
-    assert!(scene.core.worker_reports(scene.now).is_empty());
+    assert!(reports(&scene).is_empty());
     // it did not hear
     scene.announce(1, 1, "m");
     assert!(told_to_end(&mut scene, 1));
-    assert!(scene.core.worker_reports(scene.now).is_empty());
+    assert!(reports(&scene).is_empty());
 }

@@ -64,7 +64,7 @@ impl Evaluator for JournalingEvaluator {
             return Err(EvaluatorError {
                 message: "enough".to_owned(),
                 help: None,
-                may_go_on: true,
+                can_go_on: true,
             });
         }
         self.left -= 1;

@@ -67,28 +67,39 @@ pub struct HeldJob {
     reason = "nobody below needs to know what is shown of the state"
 )]
 impl Core {
-    /// Returns all connected workers, ordered by id; their names are empty and none is local, since the scheduler knows
-    /// neither certificates nor processes.
-    pub fn worker_reports(&self, now: Duration) -> Vec<(WorkerId, WorkerReport)> {
+    /// Returns all connected workers, ordered by id. `named` returns the name of a worker by its id, host and process id,
+    /// and whether the run started it on its own machine.
+    pub fn worker_reports(
+        &self,
+        now: Duration,
+        named: impl Fn(WorkerId, &str, u32) -> (String, bool),
+    ) -> Vec<(WorkerId, WorkerReport)> {
         let members = self.members.iter();
-        members
-            .map(|(id, member)| (*id, report(*id, member, now)))
-            .collect()
+        let one = |(id, member): (&WorkerId, &Member)| {
+            let announced = &member.announcement;
+            let named = named(*id, &announced.host, announced.pid);
+            (*id, report((*id, member), named, now))
+        };
+        members.map(one).collect()
     }
 }
 
-fn report(id: WorkerId, member: &Member, now: Duration) -> WorkerReport {
+fn report(
+    (id, member): (WorkerId, &Member),
+    (name, local): (String, bool),
+    now: Duration,
+) -> WorkerReport {
     let present_s = now.saturating_sub(member.joined_at).as_secs_f64();
     let jobs = member.leases.iter().map(|lease| HeldJob {
         job: lease.attempt.job.0,
         for_s: now.saturating_sub(lease.sent).as_secs_f64(),
     });
     WorkerReport {
-        name: String::new(),
+        name,
         id: id.to_string(),
         host: member.announcement.host.clone(),
         pid: member.announcement.pid,
-        local: false,
+        local,
         slots: member.announcement.slots,
         version: member.announcement.build.clone(),
         state: match (member.drained, member.ready) {
