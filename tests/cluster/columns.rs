@@ -4,12 +4,12 @@ use dispatch::runtime::{Dispatch, DispatchOptions};
 use journal::event::JobReason;
 use protocol::{
     case::Case,
-    id::{ContentHash, JobId},
+    id::JobId,
     job::{Answer, Column, Derivative, Individual, Job, Outcome, Reply, SimulateSpec},
     pumping_unit::{Discretisation, PumpingUnit},
-    wire,
 };
-use std::{collections::BTreeMap, path::Path, time::Duration};
+use std::{collections::BTreeMap, path::Path, sync::Arc, time::Duration};
+use study::ColumnDivision;
 
 /// Loads the shipped machine with longer, fewer rope cylinders, for speed.
 fn coarse() -> Case {
@@ -56,13 +56,11 @@ fn jobs(case: &Case) -> Vec<Job> {
 }
 
 fn options(case: &Case, folder: &Path, workers: usize) -> DispatchOptions {
-    let mut options = DispatchOptions {
-        pause_limit: dispatch::runtime::PAUSE_LIMIT,
-        case: case.clone(),
-        ..tests::options(folder, None, workers)
-    };
-    options.header.case = ContentHash::of(&wire::encode(case).unwrap());
-    options
+    let settings = "{}".to_owned();
+    DispatchOptions {
+        divide: Arc::new(ColumnDivision::of(case)),
+        ..DispatchOptions::local(folder, workers, case, "test", settings).unwrap()
+    }
 }
 
 async fn outcomes(case: &Case, workers: usize) -> BTreeMap<JobId, Outcome> {

@@ -4,10 +4,12 @@
 //! strategy; [`compare()`] then scores and simulates selected individuals under selected conditions;
 //! [`evaluate()`] scores individuals requested by another program, [`score_all()`] those of a list; [`Sweep`]
 //! runs many searches in parallel. All use workers only through the trait [`Evaluator`], with results in any
-//! order; what they return is a function of the case, the settings and the seed.
+//! order, which the dispatcher of a run implements; what they return is a function of the case, the settings and the
+//! seed. [`ColumnDivision`] divides simulations with derivatives for idle slots.
 mod batch;
 mod calibrate;
 mod calibration;
+mod column_division;
 mod compare;
 mod diagnose;
 mod dispatched;
@@ -35,6 +37,7 @@ pub use calibrate::{Calibrated, calibrate};
 pub use calibration::{
     CalibrationReader, CalibrationResult, RecordedCalibration, calibrate_case, read_calibration,
 };
+pub use column_division::{ColumnDivision, least_parts};
 pub use compare::{CompareRequest, Compared, ComparedCurves, PICTURES, compare};
 pub use diagnose::diagnose_on;
 pub use dispatch::scheduler::{Completed, Snapshot};

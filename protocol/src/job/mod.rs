@@ -13,6 +13,7 @@
 mod channels;
 mod curves;
 mod derivative;
+pub mod division;
 mod failure;
 mod failure_files;
 mod identifier;

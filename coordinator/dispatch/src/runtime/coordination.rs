@@ -2,7 +2,7 @@
 //! and clock. The simulation of a cluster runs the same code.
 //!
 //! Parts do not leave this module: commands concern the jobs that were submitted.
-use super::divide::{DividedJobs, PartResult, is_divisible, is_not_stored, part_count};
+use super::divide::{Divide, DividedJobs, PartResult, is_not_stored, part_count};
 use crate::scheduler::{Command, Completed, Core, Input, Notice, StopReason};
 use journal::event::Finished;
 use journal::job_range::is_part;
@@ -10,7 +10,7 @@ use protocol::{
     id::JobId,
     job::{Job, Outcome},
 };
-use std::time::Duration;
+use std::{sync::Arc, time::Duration};
 
 /// Scheduler core and divided jobs of one coordinator process.
 #[derive(Debug)]
@@ -21,11 +21,11 @@ pub(crate) struct Coordination {
 }
 
 impl Coordination {
-    /// Creates the state of a coordinator process from its scheduler core.
-    pub(crate) fn new(core: Core) -> Self {
+    /// Creates the state of a coordinator process from its scheduler core; `divide` divides its jobs.
+    pub(crate) const fn new(core: Core, divide: Arc<dyn Divide>) -> Self {
         Self {
             core,
-            divided: DividedJobs::default(),
+            divided: DividedJobs::new(divide),
             commands: Vec::new(),
         }
     }
@@ -52,19 +52,20 @@ impl Coordination {
         std::mem::take(&mut self.commands)
     }
 
-    /// Submits jobs that have no result yet: an anticipated one with the same content is claimed, and jobs with
-    /// derivatives are divided into as many parts as there are idle slots for them.
+    /// Submits jobs that have no result yet: an anticipated one with the same content is claimed, and divisible jobs
+    /// are divided into as many parts as there are idle slots for them.
     pub(crate) fn submit(&mut self, jobs: Vec<(JobId, Job)>, now: Duration) -> Vec<Command> {
         let mut new = jobs;
         new.retain(|(id, job)| !self.claim(*id, job, now));
-        let (divisible, plain): (Vec<_>, Vec<_>) =
-            new.into_iter().partition(|(_, job)| is_divisible(job));
+        let (divisible, plain): (Vec<_>, Vec<_>) = new
+            .into_iter()
+            .partition(|(_, job)| self.divided.units(job) > 1);
         for (id, job) in plain {
             self.process(Input::Submit { id, job }, now);
         }
         let (count, idle) = (divisible.len(), self.core.idle_slots());
         for (id, job) in divisible {
-            let parts = part_count(job.columns(), count, idle);
+            let parts = part_count(self.divided.units(&job), count, idle);
             let parts = self.divided.divide(id, job, parts);
             for (id, job) in parts {
                 self.process(Input::Submit { id, job }, now);

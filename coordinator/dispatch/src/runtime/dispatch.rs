@@ -1,7 +1,7 @@
 //! Handle of an open run, used by the caller that submits jobs.
 use super::{
     control::Control,
-    divide,
+    divide::Divide,
     engine::{Engine, Request, RunSummary},
     error::DispatchError,
     listen::{Addresses, addresses, admissible, allow_connections, keys},
@@ -38,7 +38,8 @@ use tokio::{
 pub struct Dispatch {
     requests: UnboundedSender<Request>,
     completed: UnboundedReceiver<Result<Completed, DispatchError>>,
-    /// Submitted jobs with derivatives that wait for the next call of [`Self::next`], when all jobs that can be
+    divide: Arc<dyn Divide>,
+    /// Submitted divisible jobs that wait for the next call of [`Self::next`], when all jobs that can be
     /// computed at the same time are known.
     divisible: Vec<(JobId, Job, JobReason)>,
     /// Contents of the jobs anticipated last.
@@ -142,6 +143,7 @@ impl Dispatch {
         run_dir: PathBuf,
     ) -> Self {
         let recorded = parts.journal.len();
+        let divide = Arc::clone(&parts.divide);
         let (requests, asked) = unbounded_channel();
         let (deliver, completed) = unbounded_channel();
         let snapshot = Arc::new(Mutex::new(Snapshot::default()));
@@ -151,6 +153,7 @@ impl Dispatch {
         Self {
             requests,
             completed,
+            divide,
             divisible: Vec::new(),
             anticipated: Vec::new(),
             entries,
@@ -176,13 +179,13 @@ impl Dispatch {
     }
 
     /// Submits a job, with the reason that the journal states; each id may be submitted once per process and is below 2^63. A result that the journal already
-    /// holds is delivered at once. A job with derivatives is sent to workers by the next call of [`Self::next`], in
+    /// holds is delivered at once. A divisible job is sent to workers by the next call of [`Self::next`], in
     /// parts where slots would be idle.
     ///
     /// # Errors
     /// [`DispatchError::Closed`] once the run has been stopped.
     pub fn submit(&mut self, id: JobId, job: Job, reason: JobReason) -> Result<(), DispatchError> {
-        if divide::is_divisible(&job) {
+        if self.divide.units(&job) > 1 {
             self.divisible.push((id, job, reason));
             return Ok(());
         }
@@ -220,7 +223,7 @@ impl Dispatch {
         asked.map_err(|_| DispatchError::Closed)
     }
 
-    /// Sends the submitted jobs with derivatives to the engine.
+    /// Sends the submitted divisible jobs to the engine.
     fn send_divisible(&mut self) -> Result<(), DispatchError> {
         if self.divisible.is_empty() {
             return Ok(());

@@ -1,9 +1,7 @@
-//! Division of jobs that ask for derivatives into parts for slots that would be idle.
+//! Division of jobs into parts for slots that would be idle.
 //!
-//! A simulation with derivatives takes several times as long as a plain one, and a descent waits for it. Each
-//! part repeats the simulation with some of the columns. Results are pure functions of their jobs, and the
-//! derivative by one column does not depend on the others: the joined answers are, bit for bit, the answer to
-//! the whole job. The journal has the whole job alone.
+//! How a job is divided and the answers of its parts are joined is known to the caller ([`Divide`]). The journal has the
+//! whole job alone.
 //!
 //! Slots that are still idle compute jobs that the run will probably submit, in parts as well. Once such a job
 //! is submitted, what has been computed of it is used; the others are withdrawn.
@@ -15,14 +13,57 @@ use journal::event::Finished;
 use journal::job_range::PARTS;
 use protocol::{
     id::{ContentHash, JobId},
-    job::{Answer, Column, Derivative, Failure, Job, Outcome, Reply},
+    job::{Failure, Job, Outcome},
     message::{Attempt, Cost},
 };
-use std::collections::{BTreeMap, BTreeSet};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    fmt,
+    sync::Arc,
+};
+
+/// Division of jobs by their content, which the dispatcher does not know.
+pub trait Divide: fmt::Debug + Send + Sync {
+    /// Returns the number of units of work that the parts of a job can share; 0 for a job that stays whole.
+    fn units(&self, job: &Job) -> usize;
+
+    /// Returns the parts of a job with at most `size` units each, in order.
+    fn split(&self, job: Job, size: usize) -> Vec<Job>;
+
+    /// Joins the outcome of the next part to that of the parts before it. That of all parts is, bit for bit, the outcome
+    /// of the whole job.
+    fn join(&self, joined: Outcome, next: Outcome) -> Outcome;
+
+    /// Returns the smallest number of parts in which an anticipated job with a number of units is worth its slots.
+    fn least_parts(&self, units: usize) -> usize;
+}
+
+/// Division that leaves every job whole.
+#[derive(Clone, Copy, Debug)]
+pub struct Undivided;
+
+impl Divide for Undivided {
+    fn units(&self, _: &Job) -> usize {
+        0
+    }
+
+    fn split(&self, job: Job, _size: usize) -> Vec<Job> {
+        vec![job]
+    }
+
+    fn join(&self, joined: Outcome, _next: Outcome) -> Outcome {
+        joined
+    }
+
+    fn least_parts(&self, _units: usize) -> usize {
+        1
+    }
+}
 
 /// Divided jobs of a run without a stored result, and anticipated jobs.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(crate) struct DividedJobs {
+    divide: Arc<dyn Divide>,
     open: BTreeMap<JobId, DividedJob>,
     /// Anticipated jobs under their provisional ids, likeliest first; they are divided jobs until they are
     /// claimed or withdrawn.
@@ -76,46 +117,30 @@ pub(crate) enum PartResult {
     Discarded,
 }
 
-/// Returns whether a job can be divided: a simulation that returns the derivatives by several columns.
-pub(crate) fn is_divisible(job: &Job) -> bool {
-    match job {
-        Job::Simulate(spec) => match spec.reply {
-            Reply::Score { with_residual, .. } => with_residual && spec.columns.len() > 1,
-            Reply::Channels => spec.columns.len() > 1,
-            Reply::Curves { .. } => false,
-        },
-        Job::Own { .. } | Job::Describe | Job::Nothing { .. } => false,
-    }
+/// Returns the number of parts into which each of `jobs` jobs with a number of units is divided on `idle` idle slots: as
+/// many as leave no slot idle.
+pub(crate) fn part_count(units: usize, jobs: usize, idle: usize) -> usize {
+    (idle / jobs.max(1)).clamp(1, units.max(1))
 }
 
-/// Returns the number of parts into which each of `jobs` jobs with `columns` columns is divided on `idle` idle
-/// slots: as many as leave no slot idle. A part with `n` columns costs as much as `1 + 0.44 n` plain
-/// simulations of the pumping unit (12 columns cost 6.3), so that even two parts halve the wait, at 1.16 times the
-/// work, of slots that would do none.
-pub(crate) fn part_count(columns: usize, jobs: usize, idle: usize) -> usize {
-    (idle / jobs.max(1)).clamp(1, columns.max(1))
-}
-
-/// Returns the smallest number of parts in which an anticipated job is worth its slots: parts of two columns,
-/// which end before the same job would if it was begun, in parts of one column, after the simulations that are
-/// running now (1.9 plain simulations against 1 + 1.4).
-const fn least_parts(columns: usize) -> usize {
-    if columns == 0 { 1 } else { columns.div_ceil(2) }
-}
-
-/// Returns the numbers of parts in which jobs with the given numbers of columns are computed ahead on `idle`
-/// slots, likeliest first; jobs beyond the end of the list are not computed ahead.
-pub(crate) fn anticipated_parts(columns: &[usize], idle: usize) -> Vec<usize> {
+/// Returns the numbers of parts in which jobs with the given numbers of units are computed ahead on `idle` slots, likeliest
+/// first; jobs beyond the end of the list are not computed ahead. `least` returns the smallest number of parts in which a
+/// job with a number of units is worth its slots.
+pub(crate) fn anticipated_parts(
+    units: &[usize],
+    idle: usize,
+    least: impl Fn(usize) -> usize,
+) -> Vec<usize> {
     let (mut left, mut parts) = (idle, Vec::new());
-    for least in columns.iter().map(|columns| least_parts(*columns)) {
+    for least in units.iter().map(|units| least(*units)) {
         if least > left {
             break;
         }
         left -= least;
         parts.push(least);
     }
-    for (parts, columns) in parts.iter_mut().zip(columns) {
-        let more = columns.saturating_sub(*parts);
+    for (parts, units) in parts.iter_mut().zip(units) {
+        let more = units.saturating_sub(*parts);
         if more <= left {
             *parts += more;
             left -= more;
@@ -124,15 +149,24 @@ pub(crate) fn anticipated_parts(columns: &[usize], idle: usize) -> Vec<usize> {
     parts
 }
 
-/// Returns the number of derivative columns that a job asks for.
-fn column_count(job: &Job) -> usize {
-    match job {
-        Job::Simulate(spec) if is_divisible(job) => spec.columns.len(),
-        Job::Simulate(_) | Job::Own { .. } | Job::Describe | Job::Nothing { .. } => 0,
-    }
-}
-
 impl DividedJobs {
+    /// Creates the state of a run without open jobs.
+    pub(crate) const fn new(divide: Arc<dyn Divide>) -> Self {
+        Self {
+            divide,
+            open: BTreeMap::new(),
+            anticipated: Vec::new(),
+            anticipated_count: 0,
+            whole_of: BTreeMap::new(),
+            joined: BTreeMap::new(),
+        }
+    }
+
+    /// Returns the number of units of work that the parts of a job can share; 0 for a job that stays whole.
+    pub(crate) fn units(&self, job: &Job) -> usize {
+        self.divide.units(job)
+    }
+
     /// Replaces the anticipated jobs by `jobs`, likeliest first: those that are anticipated already stay, as
     /// far as `idle` slots suffice, and slots that are left take new ones.
     pub(crate) fn anticipate(&mut self, jobs: Vec<Job>, mut idle: usize) -> AnticipationChange {
@@ -168,8 +202,9 @@ impl DividedJobs {
         for part in &change.withdrawn {
             self.whole_of.remove(part);
         }
-        let columns: Vec<usize> = new.iter().map(column_count).collect();
-        for (job, count) in new.into_iter().zip(anticipated_parts(&columns, idle)) {
+        let units: Vec<usize> = new.iter().map(|job| self.divide.units(job)).collect();
+        let counts = anticipated_parts(&units, idle, |units| self.divide.least_parts(units));
+        for (job, count) in new.into_iter().zip(counts) {
             self.anticipated_count += 1;
             let id = JobId(PARTS | self.anticipated_count);
             self.anticipated.push(id);
@@ -197,8 +232,8 @@ impl DividedJobs {
     /// Divides a job into about `count` parts and returns these with their ids; an indivisible job, or one that
     /// is to have one part, stays whole.
     pub(crate) fn divide(&mut self, id: JobId, job: Job, count: usize) -> Vec<(JobId, Job)> {
-        let columns = column_count(&job);
-        if columns <= columns.div_ceil(count.max(1)) {
+        let units = self.divide.units(&job);
+        if units <= units.div_ceil(count.max(1)) {
             return vec![(id, job)];
         }
         self.open(id, job, count)
@@ -208,19 +243,11 @@ impl DividedJobs {
     /// parts with their ids.
     fn open(&mut self, id: JobId, job: Job, count: usize) -> Vec<(JobId, Job)> {
         let work = job.work_hash();
-        let size = column_count(&job).div_ceil(count.max(1));
-        let parts: Vec<Job> = match job {
-            Job::Simulate(spec) if size > 0 => {
-                let part = |columns: &[Column]| {
-                    let mut part = spec.clone();
-                    part.columns = columns.to_vec();
-                    Job::Simulate(part)
-                };
-                spec.columns.chunks(size).map(part).collect()
-            }
-            whole @ (Job::Simulate(_) | Job::Own { .. } | Job::Describe | Job::Nothing { .. }) => {
-                vec![whole]
-            }
+        let size = self.divide.units(&job).div_ceil(count.max(1));
+        let parts = if size > 0 {
+            self.divide.split(job, size)
+        } else {
+            vec![job]
         };
         let parts: Vec<(JobId, Job)> = parts
             .into_iter()
@@ -262,7 +289,7 @@ impl DividedJobs {
             return PartResult::Discarded;
         };
         self.joined.insert(whole, divided.parts.clone());
-        join(whole, divided).map_or(PartResult::Discarded, |joined| {
+        join(whole, divided, &*self.divide).map_or(PartResult::Discarded, |joined| {
             PartResult::Joined(Box::new(joined))
         })
     }
@@ -321,8 +348,8 @@ fn part_id(whole: JobId, part: &Job) -> JobId {
     JobId(u64::from_le_bytes([a, b, c, d, e, f, g, h]) | PARTS)
 }
 
-/// Joins the results of the parts of a job to the result of the job; the first failure is that of the whole job.
-fn join(id: JobId, divided: DividedJob) -> Option<Finished> {
+/// Joins the results of the parts of a job to the result of the job.
+fn join(id: JobId, divided: DividedJob, by: &dyn Divide) -> Option<Finished> {
     let DividedJob {
         work,
         parts,
@@ -335,17 +362,7 @@ fn join(id: JobId, divided: DividedJob) -> Option<Finished> {
             wall_us: whole.cost.wall_us + part.cost.wall_us,
             cpu_us: whole.cost.cpu_us + part.cost.cpu_us,
         };
-        whole.outcome = match (whole.outcome, part.outcome) {
-            (Outcome::Done(mut first), Outcome::Done(next)) => {
-                if let (Some(columns), Some(more)) = (columns(&mut first), into_columns(next)) {
-                    columns.extend(more);
-                }
-                Outcome::Done(first)
-            }
-            (failed @ Outcome::Failed(_), _) | (Outcome::Done(_), failed @ Outcome::Failed(_)) => {
-                failed
-            }
-        };
+        whole.outcome = by.join(whole.outcome, part.outcome);
     }
     Some(Finished {
         attempt: Attempt {
@@ -355,16 +372,4 @@ fn join(id: JobId, divided: DividedJob) -> Option<Finished> {
         work,
         ..whole
     })
-}
-
-const fn columns(answer: &mut Answer) -> Option<&mut Vec<Derivative>> {
-    match answer {
-        Answer::Scored(evaluation) => Some(&mut evaluation.columns),
-        Answer::Channels(observation) => Some(&mut observation.columns),
-        Answer::Curves(_) | Answer::Own(_) | Answer::Described(_) | Answer::Nothing(_) => None,
-    }
-}
-
-fn into_columns(mut answer: Answer) -> Option<Vec<Derivative>> {
-    columns(&mut answer).map(std::mem::take)
 }

@@ -118,12 +118,13 @@ impl<L: CoordinatorEnd> Engine<L> {
             journal,
             said,
             pause_limit,
+            divide,
             ..
         } = parts;
         let begun = Instant::now();
         Self {
             run,
-            coordination: Coordination::new(core),
+            coordination: Coordination::new(core, divide),
             journal,
             said,
             link,

@@ -24,6 +24,7 @@ pub use bench::{
 };
 pub(crate) use coordination::Coordination;
 pub use dispatch::Dispatch;
+pub use divide::{Divide, Undivided};
 pub(crate) use divide::{anticipated_parts, part_count};
 pub use engine::RunSummary;
 pub use error::DispatchError;

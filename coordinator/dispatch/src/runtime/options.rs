@@ -1,5 +1,8 @@
 //! Options for opening a run.
-use super::PAUSE_LIMIT;
+use super::{
+    PAUSE_LIMIT,
+    divide::{Divide, Undivided},
+};
 use journal::event::RunHeader;
 use protocol::{
     case::Case,
@@ -8,6 +11,7 @@ use protocol::{
 };
 use std::{
     path::{Path, PathBuf},
+    sync::Arc,
     time::Duration,
 };
 
@@ -27,6 +31,8 @@ pub struct DispatchOptions {
     /// Maximum time to wait while the journal cannot be written, or while only jobs are left whose workers were
     /// all lost; then the run ends with the results it has.
     pub pause_limit: Duration,
+    /// Division of jobs into parts for slots that would be idle.
+    pub divide: Arc<dyn Divide>,
     /// Case that the jobs simulate.
     pub case: Case,
     /// Command, case and settings that determine the result of the run.
@@ -34,7 +40,7 @@ pub struct DispatchOptions {
 }
 
 impl DispatchOptions {
-    /// Creates the options of a run of a case that only workers on this machine can join. `kind` names the command,
+    /// Creates the options of a run of a case that only workers on this machine can join, whose jobs stay whole. `kind` names the command,
     /// `settings` is the canonical JSON of what else determines the result.
     ///
     /// # Errors
@@ -53,6 +59,7 @@ impl DispatchOptions {
             tls: None,
             local_workers,
             pause_limit: PAUSE_LIMIT,
+            divide: Arc::new(Undivided),
             case: case.clone(),
             header: RunHeader {
                 kind: kind.to_owned(),

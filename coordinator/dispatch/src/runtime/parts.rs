@@ -1,6 +1,6 @@
 //! Parts of a run that do not depend on its link: the scheduler core, initialised from the journal, and the
 //! journal.
-use super::{error::DispatchError, options::DispatchOptions};
+use super::{divide::Divide, error::DispatchError, options::DispatchOptions};
 use crate::scheduler::{Core, CoreOptions, Policy};
 use journal::{Journal, StudyEntries, WriterReport};
 use link::Blob;
@@ -10,6 +10,7 @@ use protocol::{
 };
 use std::{
     collections::BTreeSet,
+    sync::Arc,
     time::{Duration, SystemTime, UNIX_EPOCH},
 };
 use tokio::sync::mpsc::{UnboundedReceiver, unbounded_channel};
@@ -22,6 +23,7 @@ pub(super) struct Parts {
     pub(super) said: UnboundedReceiver<WriterReport>,
     pub(super) blob: Blob,
     pub(super) pause_limit: Duration,
+    pub(super) divide: Arc<dyn Divide>,
 }
 
 impl Parts {
@@ -77,6 +79,7 @@ impl Parts {
             said,
             blob,
             pause_limit: options.pause_limit,
+            divide: Arc::clone(&options.divide),
         };
         Ok((parts, begun.entries))
     }

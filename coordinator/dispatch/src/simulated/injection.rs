@@ -1,14 +1,14 @@
 //! Faults of a simulated cluster: what each does to coordinator, disk and workers, and how the coordinator starts again.
 use super::{Cluster, Fault, PROOF, Process, event::ClusterEvent, options};
 use crate::{
-    runtime::Coordination,
+    runtime::{Coordination, Undivided},
     scheduler::{Core, CoreOptions, Input},
 };
 use protocol::{
     id::{ContentHash, WorkerId},
     proof::ReferenceResult,
 };
-use std::{mem, time::Duration};
+use std::{mem, sync::Arc, time::Duration};
 
 /// Time after which the transport notices that a worker cannot be reached.
 const UNREACHABLE: Duration = Duration::from_secs(3);
@@ -79,7 +79,7 @@ impl Cluster {
             expected: opened.run.present.into_keys().collect(),
             ..options(self.policy.clone())
         });
-        self.coordination = Coordination::new(core);
+        self.coordination = Coordination::new(core, Arc::new(Undivided));
         self.recorded = opened.results;
         self.is_proved = is_proved;
         if !is_proved {

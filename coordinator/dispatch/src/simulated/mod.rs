@@ -17,7 +17,7 @@ pub use source::{Generations, JobSource, SimulatedDerivatives, SimulatedSearch, 
 pub use worker::{PROOF, Running, SimulatedWorker, cost, outcome};
 
 use crate::{
-    runtime::Coordination,
+    runtime::{Coordination, Undivided},
     scheduler::{Command, Core, CoreOptions, Input, JobSet, Notice, Policy, Snapshot, StopReason},
 };
 use ::journal::event::{Event, Finished};
@@ -36,6 +36,7 @@ use search::random::{Phase, Streams};
 use std::{
     collections::{BTreeMap, BTreeSet},
     mem,
+    sync::Arc,
     time::Duration,
 };
 
@@ -200,7 +201,10 @@ impl Cluster {
     pub fn new(setting: ClusterSetting) -> Self {
         let policy = Policy::default();
         let mut cluster = Self {
-            coordination: Coordination::new(Core::new(options(policy.clone()))),
+            coordination: Coordination::new(
+                Core::new(options(policy.clone())),
+                Arc::new(Undivided),
+            ),
             policy,
             journal: None,
             recorded: BTreeMap::new(),

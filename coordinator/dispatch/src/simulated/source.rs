@@ -85,6 +85,8 @@ pub struct SimulatedDerivatives<'a> {
     pub columns: usize,
     /// Computing time of a job with all columns over that of a plain one.
     pub cost: f64,
+    /// Smallest number of parts in which an anticipated job with a number of columns is worth its slots.
+    pub least_parts: fn(usize) -> usize,
     /// Computing times of the jobs handed out so far that ask for derivatives, over that of a plain job.
     pub factors: Rc<RefCell<BTreeMap<u64, f64>>>,
 }
@@ -217,7 +219,12 @@ impl JobSource for SimulatedSearch<'_> {
             .map(|draft| self.columns(draft.purpose))
             .collect();
         let mut jobs = Vec::new();
-        for (draft, parts) in drafts.iter().zip(anticipated_parts(&columns, idle)) {
+        let least = |columns| {
+            let derivatives = self.derivatives.as_ref();
+            derivatives.map_or(1, |own| (own.least_parts)(columns))
+        };
+        let counts = anticipated_parts(&columns, idle, least);
+        for (draft, parts) in drafts.iter().zip(counts) {
             let key = self.key(&draft.genes, draft.purpose);
             let numbers = match self.anticipated.get(&key) {
                 Some(numbers) => numbers.clone(),

@@ -3,13 +3,16 @@ use crate::cli::output::problem::Problem;
 use dispatch::runtime::{Dispatch, DispatchError, DispatchOptions};
 use journal::JournalError;
 use link::LinkError;
-use study::EvaluatorError;
+use std::sync::Arc;
+use study::{ColumnDivision, EvaluatorError};
 
-/// Opens or resumes the journal of a run and starts the local workers.
+/// Opens or resumes the journal of a run and starts the local workers; simulations with derivatives are divided for
+/// slots that would be idle.
 ///
 /// # Errors
 /// If the local workers cannot run the case, or the dispatcher cannot be opened.
-pub(crate) async fn open(options: DispatchOptions) -> anyhow::Result<Dispatch> {
+pub(crate) async fn open(mut options: DispatchOptions) -> anyhow::Result<Dispatch> {
+    options.divide = Arc::new(ColumnDivision::of(&options.case));
     let kind = case::kind::of(&options.case);
     let unready = (options.local_workers > 0).then(|| kind.readiness_problem(&options.case));
     if let Some((message, remedy)) = unready.flatten() {

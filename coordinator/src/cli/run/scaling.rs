@@ -34,7 +34,9 @@ use std::{
 use study::scaling::{
     Overheads, ScalingResult, ScalingRow, Shares, SlotMode, SyntheticObjective, project,
 };
-use study::{Evaluator, EvaluatorError, ProgressView, Search, Stop, Sweep, Watch, score_all};
+use study::{
+    Evaluator, EvaluatorError, ProgressView, Search, Stop, Sweep, Watch, least_parts, score_all,
+};
 use support::quantile;
 
 /// Benchmark of the coordinator's cost per result: number of sessions, number of jobs, and bytes per result
@@ -453,6 +455,7 @@ impl ScalingRun<'_> {
             residual: &residual,
             columns: self.space.dimension(),
             cost: overheads.derivatives_over_plain,
+            least_parts,
             factors: Rc::clone(&factors),
         });
         source.limit = evaluations.max(MIN_EVALUATIONS_PER_SLOT * slots);

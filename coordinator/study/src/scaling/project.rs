@@ -1,6 +1,7 @@
 //! Projection of a search to more slots than are available: the real scheduler and the real strategy on a
 //! simulated clock.
 use super::row::{MAX_WORKERS, Overheads, SLOW_ONE_IN, ScalingRow, Shares, SlotMode};
+use crate::column_division::least_parts;
 use dispatch::simulated::{Cluster, ClusterSetting, SimulatedDerivatives, SimulatedSearch};
 use journal::event::Spent;
 use protocol::job::{Derivative, Per, to_single_precision};
@@ -94,6 +95,7 @@ pub fn project(
         residual: &residual,
         columns: space.dimension(),
         cost: overheads.derivatives_over_plain,
+        least_parts,
         factors,
     });
     cluster.run(&mut source, LIMIT);
@@ -235,6 +237,7 @@ mod tests {
                 residual: &residual,
                 columns: space.dimension(),
                 cost: 5.0,
+                least_parts,
                 factors: Rc::default(),
             });
             cluster.run(&mut source, LIMIT);

@@ -3,8 +3,37 @@ use super::*;
 use journal::job_range::is_part;
 use protocol::{
     id::{AttemptId, WorkerId},
-    job::{Column, Counters, Evaluation, Individual, Per, Reply, SimulateSpec, Verdict},
+    job::{
+        Answer, Column, Counters, Derivative, Evaluation, Individual, Per, Reply, SimulateSpec,
+        Verdict, division,
+    },
 };
+
+fn halves(units: usize) -> usize {
+    units.div_ceil(2).max(1)
+}
+
+/// Division of simulations by columns.
+#[derive(Debug)]
+struct ByColumns;
+
+impl Divide for ByColumns {
+    fn units(&self, job: &Job) -> usize {
+        division::shared_columns(job)
+    }
+
+    fn split(&self, job: Job, size: usize) -> Vec<Job> {
+        division::split(job, size)
+    }
+
+    fn join(&self, joined: Outcome, next: Outcome) -> Outcome {
+        division::join(joined, next)
+    }
+
+    fn least_parts(&self, units: usize) -> usize {
+        halves(units)
+    }
+}
 
 fn job(columns: usize) -> Job {
     let reply = Reply::Score {
@@ -62,13 +91,12 @@ fn idle_slots_are_shared_by_the_jobs_and_no_part_is_empty() {
     assert_eq!(part_count(12, 10, 20), 2);
     assert_eq!(part_count(12, 10, 9), 1);
     assert_eq!(part_count(12, 1, 0), 1);
-    assert!(is_divisible(&job(2)) && !is_divisible(&job(1)));
 }
 
 #[test]
 fn joined_parts_are_the_answer_to_the_whole_job_in_any_order() {
     for count in [2, 3, 5, 12] {
-        let mut divided = DividedJobs::default();
+        let mut divided = DividedJobs::new(Arc::new(ByColumns));
         let whole = job(12);
         let parts = divided.divide(JobId(7), whole.clone(), count);
         assert!(parts.iter().all(|(id, _)| is_part(*id)));
@@ -98,7 +126,7 @@ fn joined_parts_are_the_answer_to_the_whole_job_in_any_order() {
 #[test]
 fn a_failed_part_fails_the_job_at_once() {
     let lost = || Outcome::Failed(Failure::deadline(5));
-    let mut divided = DividedJobs::default();
+    let mut divided = DividedJobs::new(Arc::new(ByColumns));
     let parts = divided.divide(JobId(7), job(4), 4);
     let first = divided.finish(finished(&parts[0], evaluated(&parts[0].1)));
     assert_eq!(first, PartResult::Awaited);
@@ -131,21 +159,24 @@ fn other_job(columns: usize, gene: f64) -> Job {
 
 #[test]
 fn the_likeliest_jobs_take_the_idle_slots() {
-    assert_eq!(anticipated_parts(&[12; 5], 75), [12, 12, 12, 12, 12]);
     assert_eq!(
-        anticipated_parts(&[12; 10], 70),
+        anticipated_parts(&[12; 5], 75, halves),
+        [12, 12, 12, 12, 12]
+    );
+    assert_eq!(
+        anticipated_parts(&[12; 10], 70, halves),
         [12, 6, 6, 6, 6, 6, 6, 6, 6, 6]
     );
-    assert_eq!(anticipated_parts(&[12; 4], 20), [6, 6, 6]);
-    assert_eq!(anticipated_parts(&[12; 4], 5), [0; 0]);
-    assert_eq!(anticipated_parts(&[0, 0, 12, 0], 8), [1, 1, 6]);
-    assert_eq!(anticipated_parts(&[], 9), [0; 0]);
+    assert_eq!(anticipated_parts(&[12; 4], 20, halves), [6, 6, 6]);
+    assert_eq!(anticipated_parts(&[12; 4], 5, halves), [0; 0]);
+    assert_eq!(anticipated_parts(&[0, 0, 12, 0], 8, halves), [1, 1, 6]);
+    assert_eq!(anticipated_parts(&[], 9, halves), [0; 0]);
 }
 
 #[test]
 fn an_anticipated_job_that_is_submitted_keeps_its_results_and_the_others_are_withdrawn() {
     for finished_before in 0..=4 {
-        let mut divided = DividedJobs::default();
+        let mut divided = DividedJobs::new(Arc::new(ByColumns));
         let (wanted, wrong) = (other_job(4, 1.0), other_job(4, 2.0));
         let change = divided.anticipate(vec![wrong.clone(), wanted.clone()], 8);
         assert_eq!((change.parts.len(), change.withdrawn.len()), (8, 0));
@@ -185,7 +216,7 @@ fn an_anticipated_job_that_is_submitted_keeps_its_results_and_the_others_are_wit
 
 #[test]
 fn a_job_that_is_anticipated_twice_is_computed_once() {
-    let mut divided = DividedJobs::default();
+    let mut divided = DividedJobs::new(Arc::new(ByColumns));
     let job = other_job(2, 1.0);
     let parts = divided.anticipate(vec![job.clone(), job.clone()], 9).parts;
     assert_eq!(parts.len(), 2);
@@ -196,7 +227,7 @@ fn a_job_that_is_anticipated_twice_is_computed_once() {
 
 #[test]
 fn fewer_idle_slots_withdraw_what_is_least_likely() {
-    let mut divided = DividedJobs::default();
+    let mut divided = DividedJobs::new(Arc::new(ByColumns));
     let jobs: Vec<Job> = (0..3).map(|k| other_job(4, f64::from(k))).collect();
     let parts = divided.anticipate(jobs.clone(), 12).parts;
     assert_eq!(parts.len(), 12);
@@ -217,7 +248,7 @@ fn fewer_idle_slots_withdraw_what_is_least_likely() {
 #[test]
 fn parts_are_named_by_their_content() {
     let ids = |whole: u64, count: usize| {
-        let mut divided = DividedJobs::default();
+        let mut divided = DividedJobs::new(Arc::new(ByColumns));
         let parts = divided.divide(JobId(whole), job(6), count);
         parts.into_iter().map(|(id, _)| id).collect::<Vec<_>>()
     };
