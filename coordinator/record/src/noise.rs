@@ -21,7 +21,7 @@ pub const STATED: f64 = 2.0;
 
 /// Largest factor by which noise variances from few cycles are widened: that of six degrees of freedom. With
 /// fewer the variance of Student's distribution is hardly meaningful or does not exist.
-const WIDEST: f64 = 1.5;
+pub const WIDEST: f64 = 1.5;
 
 /// Way in which a record's noise is known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

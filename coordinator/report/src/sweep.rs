@@ -24,7 +24,7 @@ pub fn grid(case: &Case, origin: &Origin, factors: &[Factor], tried: &[TrialRun]
         Some((run, objective)) => format!(
             "The best of {} searches reached an objective of {}: {}, seed {}.",
             count(tried.len() as u64),
-            significant(objective),
+            objective_words(case, objective),
             level_names(factors, &run.levels),
             run.seed
         ),
@@ -68,15 +68,19 @@ pub fn individuals(
              of {}.",
             count(complete as u64),
             count(all.len() as u64),
-            significant(best.fitness)
+            objective_words(case, best.fitness)
         ),
         Some(_) | None => "No individual completed its simulation.".to_owned(),
     };
     let row = |(place, row, scored): &(usize, &Vec<f64>, &Scored)| {
         let (objective, ending) = match scored {
-            Ok(own) => (significant(own.fitness), verdict(&own.verdict)),
-            Err(why) => (MISSING.to_owned(), why.to_string()),
+            Ok(own) => (
+                is_complete(scored).then_some(own.fitness),
+                verdict(&own.verdict),
+            ),
+            Err(why) => (None, why.to_string()),
         };
+        let objective = objective.map_or_else(|| MISSING.to_owned(), significant);
         let values = row.iter().map(|value| significant(*value));
         Row::new(
             place.to_string(),
@@ -99,6 +103,13 @@ pub fn individuals(
     let table = table.with_notes((all.len() > MOST).then_some(note));
     let title = format!("Individuals of a table on {}", case.name);
     page(title, (case, origin), lead, table)
+}
+
+/// Formats an objective with its unit.
+fn objective_words(case: &Case, objective: f64) -> String {
+    let unit = case.objective_unit();
+    let unit = unit.map_or_else(String::new, |unit| format!(" {unit}²"));
+    format!("{}{unit}", significant(objective))
 }
 
 fn page(title: String, (case, origin): (&Case, &Origin), lead: String, table: Table) -> Report {

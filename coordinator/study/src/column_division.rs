@@ -96,7 +96,9 @@ mod tests {
     #[test]
     fn jobs_of_a_program_that_returns_gradients_stay_whole() {
         let job = Job::Simulate(SimulateSpec {
-            columns: ["a", "b", "c"].map(|name| Column::new(name.to_owned())).to_vec(),
+            columns: ["a", "b", "c"]
+                .map(|name| Column::new(name.to_owned()))
+                .to_vec(),
             ..SimulateSpec::new(Individual::new(0, vec![1.0; 3]), Reply::Channels)
         });
         let units = |case: &Case| ColumnDivision::of(case).units(&job);
