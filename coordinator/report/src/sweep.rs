@@ -4,7 +4,7 @@ use crate::document::{Block, Report, Row, Section, Table};
 use crate::number::{MISSING, count, significant};
 use crate::orthogonal::{level_names, runs};
 use crate::section::origin;
-use crate::words::{objective_heading, verdict};
+use crate::words::{SYNTHETIC, objective_heading, square_after, verdict, with_unit};
 use protocol::{case::Case, job::Verdict};
 use study::{
     Scored,
@@ -51,7 +51,7 @@ pub fn individuals(
     let is_complete = |scored: &Scored| {
         scored
             .as_ref()
-            .is_ok_and(|own| own.verdict == Verdict::Complete)
+            .is_ok_and(|own| own.verdict == Verdict::Complete && own.fitness.is_finite())
     };
     let order = |scored: &Scored| match scored {
         Ok(own) => (u8::from(!is_complete(scored)), own.fitness),
@@ -89,15 +89,20 @@ pub fn individuals(
     };
     let heading = objective_heading(case);
     let fixed = ["row", heading.as_str(), "simulation"];
-    let head = fixed.into_iter().chain(names.iter().map(String::as_str));
+    let unit = |name: &String| {
+        let unknown = case.unknowns.iter().find(|own| own.name == *name);
+        unknown.map_or_else(|| name.clone(), |own| with_unit(name, &own.unit))
+    };
+    let fixed = fixed.into_iter().map(str::to_owned);
     let table = Table {
         title: "Individuals".to_owned(),
-        head: head.map(str::to_owned).collect(),
+        head: fixed.chain(names.iter().map(unit)).collect(),
         rows: all.iter().take(MOST).map(row).collect(),
         notes: Vec::new(),
     };
     let note = format!(
-        "The best {MOST} of {} individuals; sweep.csv has all of them.",
+        "The best {} of {} individuals; sweep.csv has all of them.",
+        count(MOST as u64),
         count(all.len() as u64)
     );
     let table = table.with_notes((all.len() > MOST).then_some(note));
@@ -107,16 +112,17 @@ pub fn individuals(
 
 /// Formats an objective with its unit.
 fn objective_words(case: &Case, objective: f64) -> String {
-    let unit = case.objective_unit();
-    let unit = unit.map_or_else(String::new, |unit| format!(" {unit}²"));
+    let unit = square_after(case.objective_unit());
     format!("{}{unit}", significant(objective))
 }
 
 fn page(title: String, (case, origin): (&Case, &Origin), lead: String, table: Table) -> Report {
+    let synthetic = origin.synthetic.then(|| Block::Text(SYNTHETIC.to_owned()));
+    let blocks = [Block::Lead(lead)].into_iter().chain(synthetic);
     let outcome = Section {
         id: "outcome",
         title: "Outcome",
-        blocks: vec![Block::Lead(lead), Block::Table(table)],
+        blocks: blocks.chain([Block::Table(table)]).collect(),
     };
     let made = origin::section(vec![Block::Facts(origin::facts(origin, case))]);
     Report::new(title, &origin.run, vec![outcome, made])

@@ -35,6 +35,12 @@ impl Coordination {
         &self.core
     }
 
+    /// Returns whether a submitted job is being computed in several parts.
+    #[cfg(test)]
+    pub(crate) fn has_parts(&self) -> bool {
+        self.divided.has_parts()
+    }
+
     /// Returns the scheduler core for changes of its options by a test.
     #[cfg(test)]
     pub(crate) const fn core_mut(&mut self) -> &mut Core {

@@ -6,6 +6,8 @@
 //! Slots that are still idle compute jobs that the run will probably submit, in parts as well. Once such a job
 //! is submitted, what has been computed of it is used; the others are withdrawn.
 #[cfg(test)]
+pub(crate) mod by_columns;
+#[cfg(test)]
 mod tests;
 
 use crate::scheduler::Completed;
@@ -323,6 +325,13 @@ impl DividedJobs {
             all.push(job);
         }
         all
+    }
+
+    /// Returns whether a submitted job is being computed in several parts.
+    #[cfg(test)]
+    pub(crate) fn has_parts(&self) -> bool {
+        let mut open = self.open.iter();
+        open.any(|(id, own)| own.parts.len() > 1 && !self.anticipated.contains(id))
     }
 
     /// Returns the id under which a job was submitted: that of the whole job for a part.

@@ -24,6 +24,8 @@ pub use bench::{
 };
 pub(crate) use coordination::Coordination;
 pub use dispatch::Dispatch;
+#[cfg(test)]
+pub(crate) use divide::by_columns::ByColumns;
 pub use divide::{Divide, Undivided};
 pub(crate) use divide::{anticipated_parts, part_count};
 pub use engine::RunSummary;

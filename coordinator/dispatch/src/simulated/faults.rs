@@ -4,6 +4,7 @@
 //! `HORSEHEAD_SEEDS=2000 cargo test --release -p dispatch simulated` runs the first 2,000 seeds, and
 //! `HORSEHEAD_SEEDS=17..18` the one with the number 17.
 use super::{Cluster, ClusterSetting, Fault, JobSource, job, outcome};
+use crate::runtime::ByColumns;
 use crate::scheduler::{Drain, Notice, Policy};
 use journal::event::Event;
 use journal::fold_medium;
@@ -18,6 +19,7 @@ use std::{
     io::Cursor,
     ops::Range,
     panic::{AssertUnwindSafe, catch_unwind},
+    sync::Arc,
     time::Duration,
 };
 
@@ -183,6 +185,7 @@ fn run(seed: u64) -> BTreeSet<String> {
         ..ClusterSetting::even(workers)
     };
     let mut cluster = Cluster::new(setting);
+    cluster.divide = Arc::new(ByColumns);
     cluster.keep_journal(Policy {
         pause_limit: draw.one(&[Duration::from_secs(40), Duration::from_mins(10)]),
         ..Policy::default()
@@ -191,8 +194,10 @@ fn run(seed: u64) -> BTreeSet<String> {
     for (at, place, fault) in &faults {
         cluster.fault(*at, *place, *fault);
     }
+    let mut has_parts = false;
     cluster.run_checked(&mut Mixed::default(), LIMIT, |cluster| {
         cluster.core().check_invariants();
+        has_parts |= cluster.coordination.has_parts();
     });
     let jobs = GENERATIONS * SIZE;
     let expected: BTreeMap<u64, Outcome> = (0..jobs)
@@ -224,6 +229,9 @@ fn run(seed: u64) -> BTreeSet<String> {
         | Notice::Stalled { .. } => None,
     });
     happened.extend(names.map(str::to_owned));
+    if has_parts {
+        happened.insert("a job in parts".to_owned());
+    }
     if cluster.processes > 3 {
         happened.insert("three coordinators and more".to_owned());
     }
@@ -298,6 +306,7 @@ fn whatever_happens_a_run_ends_with_the_results_of_one_without_faults() {
             "Crash",
             "a job waits for a new worker",
             "a job runs alone",
+            "a job in parts",
             "a worker is refused",
             "three coordinators and more",
         ];

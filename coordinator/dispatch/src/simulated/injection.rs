@@ -1,7 +1,7 @@
 //! Faults of a simulated cluster: what each does to coordinator, disk and workers, and how the coordinator starts again.
 use super::{Cluster, Fault, PROOF, Process, event::ClusterEvent, options};
 use crate::{
-    runtime::{Coordination, Undivided},
+    runtime::Coordination,
     scheduler::{Core, CoreOptions, Input},
 };
 use protocol::{
@@ -79,7 +79,7 @@ impl Cluster {
             expected: opened.run.present.into_keys().collect(),
             ..options(self.policy.clone())
         });
-        self.coordination = Coordination::new(core, Arc::new(Undivided));
+        self.coordination = Coordination::new(core, Arc::clone(&self.divide));
         self.recorded = opened.results;
         self.is_proved = is_proved;
         if !is_proved {

@@ -17,7 +17,7 @@ pub use source::{Generations, JobSource, SimulatedDerivatives, SimulatedSearch, 
 pub use worker::{PROOF, Running, SimulatedWorker, cost, outcome};
 
 use crate::{
-    runtime::{Coordination, Undivided},
+    runtime::{Coordination, Divide, Undivided},
     scheduler::{Command, Core, CoreOptions, Input, JobSet, Notice, Policy, Snapshot, StopReason},
 };
 use ::journal::event::{Event, Finished};
@@ -147,6 +147,8 @@ enum Process {
 /// Simulated coordinator with its workers.
 pub struct Cluster {
     coordination: Coordination,
+    /// Division of jobs by the next coordinator process.
+    pub(crate) divide: Arc<dyn Divide>,
     /// Time limits and retry limits of the coordinator.
     pub(crate) policy: Policy,
     /// Journal of the coordinator; `None` if it is never killed.
@@ -205,6 +207,7 @@ impl Cluster {
                 Core::new(options(policy.clone())),
                 Arc::new(Undivided),
             ),
+            divide: Arc::new(Undivided),
             policy,
             journal: None,
             recorded: BTreeMap::new(),

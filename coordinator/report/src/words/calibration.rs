@@ -117,7 +117,7 @@ pub(crate) fn agreement(calibration: &Calibration, checks: &[MachineCheck]) -> O
 }
 
 /// Formats the square of a unit with a leading space; empty where there is no unit.
-pub(crate) fn square_after(unit: Option<&str>) -> String {
+pub fn square_after(unit: Option<&str>) -> String {
     match squared(unit).as_str() {
         "" => String::new(),
         square => format!(" {square}"),

@@ -8,11 +8,11 @@ mod gene;
 mod name;
 mod outcome;
 
-pub use calibration::intervals;
 pub(super) use calibration::{
     absolute_worse, agreement, channels, complete_objective, headline, lacks_intervals,
-    model_error, no_intervals, noise_level, rivals, square_after, warnings,
+    model_error, no_intervals, noise_level, rivals, warnings,
 };
+pub use calibration::{intervals, square_after};
 pub(super) use gene::{at_bound, bound, interval_cell};
 pub(super) use name::{
     abscissa_quantity, calibrated, channel_title, is_fitted, join_words, lower, objective_heading,

@@ -79,10 +79,19 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         arguments.genes.as_deref(),
     )?;
     let seed = target.seed(arguments.seed);
+    let settings = DiagnosisSettings {
+        thresholds: Thresholds {
+            rounds: usize::from(arguments.rounds),
+            simulations: target.loaded.diagnose.simulations,
+            without: arguments.without.clone(),
+            ..Thresholds::default()
+        },
+        differences: arguments.differences,
+    };
     let path = match &arguments.run {
         Some(path) => path.clone(),
         // after --add the case has what the run found
-        None => match target.earlier_path(DIAGNOSE, seed)? {
+        None => match target.earlier_path(seed, &settings)? {
             Some(earlier) => earlier,
             None => target.run_path(DIAGNOSE, seed)?,
         },
@@ -93,15 +102,6 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     }
     let has_own = target.loaded.effects.len() < stated;
     terminal::note(&target.loaded.notes);
-    let settings = DiagnosisSettings {
-        thresholds: Thresholds {
-            rounds: usize::from(arguments.rounds),
-            simulations: target.loaded.diagnose.simulations,
-            without: arguments.without.clone(),
-            ..Thresholds::default()
-        },
-        differences: arguments.differences,
-    };
     let manifest = target.manifest(seed, settings)?;
     let run = Run::begin(&path, manifest, target.loaded.case.clone())?;
     let answer = if is_complete(&run) {

@@ -243,6 +243,7 @@ impl Shared {
         loop {
             let was_finished = folder.is_finished();
             let growth = self.read_on(&mut journal)?;
+            let ended = self.ended_as(&journal);
             if self.is_stopped() {
                 return Err(StudyError::Interrupted.into());
             }
@@ -252,7 +253,7 @@ impl Shared {
                 Growth::Missing if had_begun || !folder.is_begun() => {
                     anyhow::bail!("the run folder was deleted")
                 }
-                Growth::Unchanged if was_finished && refused != Some(self.ended_as(&journal)) => {
+                Growth::Unchanged if was_finished && refused != Some(ended) => {
                     match self.report(&folder, &kind, run.as_deref()) {
                         Ok(report) => return Ok(report),
                         Err(error) => self.end(Ending {
@@ -260,7 +261,7 @@ impl Shared {
                             error: Some(format!("{error:#}")),
                         }),
                     }
-                    refused = Some(self.ended_as(&journal));
+                    refused = Some(ended);
                 }
                 // what was missing is being computed again
                 Growth::Grown if refused.is_some() => {

@@ -109,8 +109,7 @@ fn search_progress(run: &Calibration, state: &RunState) -> Section {
     let log = state.reading.log();
     let (generations, planned) = state.plan;
     let (completed, failed) = (log.len() as u64, log.failed() as u64);
-    let unit = run.case.objective_unit();
-    let unit = unit.map_or_else(String::new, |unit| format!(" {unit}²"));
+    let unit = words::square_after(run.case.objective_unit());
     let mut facts = vec![Fact::new(
         "evaluations",
         format!(

@@ -128,7 +128,7 @@ impl<S: RunIdentity> Run<S> {
             case_hash: hash::case_hash(&self.case)?,
             measured_name: manifest.measured.clone(),
             preset: (!manifest.preset.is_empty()).then(|| manifest.preset.clone()),
-            seed: Some(manifest.seed),
+            seed: S::SEEDED.then_some(manifest.seed),
             digest,
             synthetic: manifest.synthetic,
         })

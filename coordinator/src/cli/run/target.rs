@@ -2,9 +2,9 @@
 //! parameters are used.
 use super::{
     calibration::Calibration,
-    diagnosis::Diagnosis,
+    diagnosis::{Diagnosis, DiagnosisSettings},
     folder::{GENES, RunFolder},
-    manifest::{CALIBRATE, Manifest, RunIdentity, Start},
+    manifest::{CALIBRATE, DIAGNOSE, Manifest, RunIdentity, Start},
     name::RunName,
 };
 use crate::cli::output::problem::Problem;
@@ -87,17 +87,22 @@ impl Target {
     }
 
     /// Returns the default path of the run folder of an earlier diagnosis of this target that added the last effects of
-    /// the case; `None` if there is none.
-    pub(crate) fn earlier_path(&self, command: &str, seed: u64) -> anyhow::Result<Option<PathBuf>> {
+    /// the case; `None` if there is none with these settings.
+    pub(crate) fn earlier_path(
+        &self,
+        seed: u64,
+        settings: &DiagnosisSettings,
+    ) -> anyhow::Result<Option<PathBuf>> {
         let stated = &self.loaded.case.effects;
         for kept in 0..stated.len() {
             let mut case = self.loaded.case.clone();
             case.effects.truncate(kept);
-            let path = self.path_of(command, seed, &case)?;
+            let path = self.path_of(DIAGNOSE, seed, &case)?;
             let Ok(earlier) = Diagnosis::open(&path) else {
                 continue;
             };
-            if earlier.as_begun(self.loaded.clone())?.effects.len() == kept {
+            let is_same = earlier.manifest.settings == *settings;
+            if is_same && earlier.as_begun(self.loaded.clone())?.effects.len() == kept {
                 return Ok(Some(path));
             }
         }

@@ -1,39 +1,14 @@
 //! Tests of divided and anticipated jobs: parts, their ids, and the joined results.
+use super::by_columns::{ByColumns, halves};
 use super::*;
 use journal::job_range::is_part;
 use protocol::{
     id::{AttemptId, WorkerId},
     job::{
         Answer, Column, Counters, Derivative, Evaluation, Individual, Per, Reply, SimulateSpec,
-        Verdict, division,
+        Verdict,
     },
 };
-
-fn halves(units: usize) -> usize {
-    units.div_ceil(2).max(1)
-}
-
-/// Division of simulations by columns.
-#[derive(Debug)]
-struct ByColumns;
-
-impl Divide for ByColumns {
-    fn units(&self, job: &Job) -> usize {
-        division::shared_columns(job)
-    }
-
-    fn split(&self, job: Job, size: usize) -> Vec<Job> {
-        division::split(job, size)
-    }
-
-    fn join(&self, joined: Outcome, next: Outcome) -> Outcome {
-        division::join(joined, next)
-    }
-
-    fn least_parts(&self, units: usize) -> usize {
-        halves(units)
-    }
-}
 
 fn job(columns: usize) -> Job {
     let reply = Reply::Score {
