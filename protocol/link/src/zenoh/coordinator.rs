@@ -115,8 +115,7 @@ impl ZenohCoordinator {
         }
         watch_presence(&session, run, to, Arc::clone(&names)).await?;
         serve(&session, run, blob).await?;
-        let sender = Sender::start(session.clone())
-            .map_err(|error| transport("start the sending thread", &error))?;
+        let sender = Sender::new(session.clone());
         Ok(Self {
             session,
             sender,
@@ -135,12 +134,11 @@ impl ZenohCoordinator {
 
 impl CoordinatorEnd for ZenohCoordinator {
     fn send(&mut self, to: WorkerId, lane: Lane, frame: Vec<u8>) {
-        let key = {
-            let names = self.names.lock().unwrap_or_else(PoisonError::into_inner);
-            names.of(to).map(|name| key::to_worker(name, lane))
-        };
-        if let Some(key) = key {
-            self.sender.send(key, lane, frame);
+        let names = self.names.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(name) = names.of(to) {
+            let frame = (key::to_worker(name, lane), lane, frame);
+            let present = |worker| names.of(WorkerId(worker)).is_some();
+            self.sender.send(to.0, frame, present);
         } else {
             tracing::debug!(%to, "a frame was not sent: the worker is gone");
         }

@@ -22,7 +22,7 @@ const ACCEPT_MS: u64 = 4000;
 /// seven tenths (`tests/README.md`).
 const SESSIONS: usize = 1000;
 
-/// Number of batches of 64 kB that a link queues for a peer that does not read, before it holds up the sender of all
+/// Number of batches of 64 kB that a link queues for a peer that does not read, before it holds up the sender of its
 /// frames: the buffer of a Unix socket takes only some 200 kB. The largest number that Zenoh allows.
 const QUEUED: usize = 16;
 

@@ -80,8 +80,7 @@ impl ZenohWorker {
                 .await
                 .map_err(|error| transport("subscribe to jobs", &error))?;
         }
-        let sender = Sender::start(session.clone())
-            .map_err(|error| transport("start the sending thread", &error))?;
+        let sender = Sender::new(session.clone());
         Ok(Self {
             name,
             session,
@@ -94,8 +93,8 @@ impl ZenohWorker {
 
 impl WorkerEnd for ZenohWorker {
     fn send(&mut self, run: RunId, lane: Lane, frame: Vec<u8>) {
-        self.sender
-            .send(key::from_worker(run, &self.name, lane), lane, frame);
+        let frame = (key::from_worker(run, &self.name, lane), lane, frame);
+        self.sender.send(run.0, frame, |peer| peer == run.0);
     }
 
     async fn receive(&mut self) -> Option<Vec<u8>> {
