@@ -28,7 +28,10 @@ use worker::handler::Prepared;
 
 fn gene((id, parameter): (&str, &str), unit: &str, bounds: [f64; 2], value: f64) -> Unknown {
     let name = format!("{id}.{parameter}");
-    Unknown::new(name, unit, Scale::Linear, value, bounds)
+    Unknown {
+        is_effect: true,
+        ..Unknown::new(name, unit, Scale::Linear, value, bounds)
+    }
 }
 
 /// Returns the shipped case with long rope cylinders and the given effects, none of whose parameters is an
