@@ -85,7 +85,6 @@ pub async fn calibrate<E: Evaluator>(
         let entry = entry(proposal, completed.outcome)?;
         strategy.tell(entry.id, entry.strategy_result());
         view.apply(&entry, completed.replayed);
-        watch.entered(&entry);
         log.insert(entry);
         check_beginning(&log, &open)?;
     }

@@ -8,7 +8,7 @@ use super::{
     error::StudyError,
     evaluator::{Evaluator, answer},
     stop::Stop,
-    watch::{View, Watch},
+    watch::Watch,
 };
 use discrepancy::baseline::budget::cost;
 use discrepancy::diagnose::Inputs;
@@ -37,10 +37,6 @@ pub struct StageView {
     pub spent: f64,
     /// Remaining budget of the stage, in units of one plain simulation.
     pub left: f64,
-}
-
-impl View for StageView {
-    type Entry = Finding;
 }
 
 /// Asks a worker for the effects that it can simulate.
@@ -125,7 +121,6 @@ impl<E: Evaluator> Laboratory for Jobs<'_, E> {
     }
 
     fn found(&mut self, finding: &Finding) -> Result<(), StudyError> {
-        self.watch.entered(finding);
         Ok(self.evaluator.enter(&Entry::Interim(finding.clone()))?)
     }
 

@@ -59,7 +59,7 @@ pub use recorded::{
 pub use stop::Stop;
 pub use stop::or_stop;
 pub use sweep::{Search, SearchResult, Sweep};
-pub use watch::{View, Watch};
+pub use watch::Watch;
 
 #[cfg(test)]
 mod tests;

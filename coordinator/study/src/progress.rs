@@ -1,10 +1,7 @@
 //! Progress of a search, accumulated over completed evaluations in the order of arrival.
 //!
 //! For display only: unlike the log it depends on the order of arrival, and it has no influence on results.
-use super::{
-    log::{EvaluationOutcome, LogEntry},
-    watch::View,
-};
+use super::log::{EvaluationOutcome, LogEntry};
 use search::strategy::Progress;
 use std::time::Duration;
 
@@ -25,10 +22,6 @@ pub struct ProgressView {
     pub replayed: u64,
     /// Smallest fitness of an individual whose simulation was complete.
     pub best: Option<f64>,
-}
-
-impl View for ProgressView {
-    type Entry = LogEntry;
 }
 
 impl ProgressView {

@@ -1,23 +1,14 @@
 //! Observer of a study, for display only: no influence on results.
 use dispatch::scheduler::Snapshot;
 
-/// Progress data that a kind of study (search, diagnosis, ..) reports to its observer.
-pub trait View {
-    /// Type of what the study finds on its way, such as the log entry of an individual.
-    type Entry: ?Sized;
-}
-
 /// Observer of a study that reports its progress as `V`.
-pub trait Watch<V: View> {
+pub trait Watch<V> {
     /// Receives the study's progress whenever a result has arrived or the plan has changed; `crew` returns
     /// the status of the workers.
     fn progress(&mut self, view: &V, crew: &dyn Fn() -> Snapshot);
 
     /// Receives the number of results from an earlier session, before any other call.
     fn resumed(&mut self, _recorded: usize) {}
-
-    /// Receives what the study has found, such as the log entry of an individual.
-    fn entered(&mut self, _entry: &V::Entry) {}
 
     /// Receives notes about the case and its records.
     fn noted(&mut self, _notes: &[String]) {}

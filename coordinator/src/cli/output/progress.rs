@@ -9,7 +9,7 @@ use std::{
     io::{self, IsTerminal as _},
     time::{Duration, Instant},
 };
-use study::{ProgressView, Snapshot, StageView, View, Watch};
+use study::{ProgressView, Snapshot, StageView, Watch};
 
 /// Maximum time between two progress lines if there is no terminal.
 const LINE_INTERVAL: Duration = Duration::from_secs(10);
@@ -184,7 +184,7 @@ impl Pace {
 /// Progress display that shows notes alone, for a step that is short.
 pub(crate) struct Silent;
 
-impl<V: View> Watch<V> for Silent {
+impl<V> Watch<V> for Silent {
     fn noted(&mut self, notes: &[String]) {
         terminal::note(notes);
     }
