@@ -4,7 +4,7 @@ use crate::cli::{
     argument::{case::case_folder, output::OutputChoice, workers::WorkersChoice},
     output::{diagnosis::DiagnosisOutput, problem::EXIT_CODES, progress::StageDisplay, terminal},
     run::{
-        diagnosis::{Diagnosis, DiagnosisSettings, diagnose, recorded},
+        diagnosis::{Diagnosis, DiagnosisSettings, diagnose},
         manifest::DIAGNOSE,
         opened::Run,
         session::Session,
@@ -104,12 +104,12 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     terminal::note(&target.loaded.notes);
     let manifest = target.manifest(seed, settings)?;
     let run = Run::begin(&path, manifest, target.loaded.case.clone())?;
-    let answer = if is_complete(&run) {
+    let answer = if let Some(answer) = DiagnosisOutput::read_complete(&run) {
         let path = run.folder.path().display();
         terminal::tell(&format!(
             "{path} is finished: its result is read from its journal"
         ));
-        DiagnosisOutput::read(&run, run.manifest.wall_s)?
+        answer
     } else {
         session.work(&run, async |dispatch, stop| {
             let mut display = StageDisplay::new();
@@ -130,9 +130,4 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         answer.add(&file)?;
     }
     answer.print(arguments.output.output, &object)
-}
-
-/// Returns whether a run has a result and an undamaged journal, so that nothing is left to compute.
-fn is_complete(run: &Diagnosis) -> bool {
-    run.folder.is_finished() && recorded(run).is_ok_and(|recorded| recorded.damage.is_empty())
 }

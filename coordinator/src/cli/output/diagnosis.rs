@@ -37,6 +37,13 @@ impl<'a> DiagnosisOutput<'a> {
         })
     }
 
+    /// Reads a diagnosis of which nothing is left to compute; `None` if it has no result, or a damaged journal.
+    pub(crate) fn read_complete(run: &'a Diagnosis) -> Option<Self> {
+        let read = || Self::read(run, run.manifest.wall_s).ok();
+        let finished = run.folder.is_finished().then(read).flatten();
+        finished.filter(|own| own.recorded.damage.is_empty())
+    }
+
     /// Builds the data of the diagnosis's report.
     pub(crate) fn subject(&self) -> anyhow::Result<report::DiagnosisInput<'_>> {
         Ok(report::DiagnosisInput {
