@@ -3,12 +3,9 @@
 //! Data flows one way: a case folder is read and checked (crate `case`), a search strategy proposes
 //! individuals, `dispatch` has them computed and records the results, `report` displays these, `store`
 //! exports them as tables for queries. `study` contains the loop from the first proposal to the comparison of
-//! the result, [`cli`] the commands, and `launch` the start of workers on other hosts. No code here links the
-//! dynamics.
+//! the result, `run` the folders and sessions of runs, `dashboard` their pages in a browser, [`cli`] the commands, and
+//! `launch` the start of workers on other hosts. No code here links the dynamics.
 pub mod cli;
-mod digest;
-mod kind;
-pub mod pumping_unit;
 #[cfg(test)]
 #[path = "../store/src/read_back.rs"]
 mod read_back;

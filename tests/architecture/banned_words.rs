@@ -28,6 +28,8 @@ const GENERAL: &[&str] = &[
     "coordinator/report/src",
     "coordinator/store/src",
     "coordinator/study/src",
+    "coordinator/run/src",
+    "coordinator/dashboard/src",
     "coordinator/src",
 ];
 
@@ -52,10 +54,13 @@ const RULES: &[Rule] = &[
         except: &[
             "protocol/src/pumping_unit",
             "worker/src/pumping_unit",
-            "coordinator/src/pumping_unit",
+            "coordinator/src/cli/command/head",
+            "coordinator/src/cli/command/life",
+            "coordinator/src/cli/command/record.rs",
+            "coordinator/src/cli/output/model/pumping_unit",
+            "coordinator/src/cli/output/object/pumping_unit_tests.rs",
             "coordinator/case/src/pumping_unit",
             "coordinator/report/src/pumping_unit",
-            "coordinator/case/src/pumping_unit",
             // tests that take the shipped case or its effects for an example
             "coordinator/case/src/effect_text.rs",
             "coordinator/src/cli/command/export/tests.rs",

@@ -5,17 +5,18 @@ use std::{
 };
 
 /// Folders and files of the readers of runs. The simulator of the dashboard is none of them: it computes what no run has.
-const READERS: [&str; 10] = [
-    "coordinator/src/cli/dashboard/folder.rs",
-    "coordinator/src/cli/dashboard/follow.rs",
-    "coordinator/src/cli/dashboard/sections.rs",
-    "coordinator/src/cli/dashboard/state.rs",
+const READERS: [&str; 11] = [
+    "coordinator/dashboard/src/folder.rs",
+    "coordinator/dashboard/src/follow.rs",
+    "coordinator/dashboard/src/sections.rs",
+    "coordinator/dashboard/src/state.rs",
     "coordinator/report/src",
     "coordinator/store/src",
     "coordinator/src/cli/output",
     "coordinator/src/cli/command/report.rs",
     "coordinator/src/cli/command/export",
-    "coordinator/src/cli/run/tables.rs",
+    "coordinator/run/src/tables.rs",
+    "coordinator/run/src/view.rs",
 ];
 
 /// Words of the code that executes a study.

@@ -4,6 +4,7 @@
     clippy::unwrap_used,
     reason = "the helpers read shipped files; a test that cannot read them has failed"
 )]
+mod surface;
 mod tetrahedra;
 
 use case::pumping_unit::{self, QuasiStaticTurn, load_head, mesh, quasi_static};
@@ -100,6 +101,7 @@ fn reduced_from(mesh: &Mesh, modes: usize, families: &[Family]) -> Reduction {
         modes,
         families,
         patterns: &[],
+        surface: None,
         fields: false,
     })
     .unwrap()

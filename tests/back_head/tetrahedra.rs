@@ -206,6 +206,7 @@ fn a_mesh_by_gmsh_gives_what_another_program_gives() {
             modes: 4,
             families: &[family],
             patterns: &[],
+            surface: None,
             fields: false,
         })
         .unwrap();

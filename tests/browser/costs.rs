@@ -27,7 +27,7 @@ const READERS: usize = 20;
 
 /// Prints a figure that was measured.
 #[expect(clippy::print_stderr, reason = "a measurement is printed")]
-fn tell(figure: &str) {
+fn print_figure(figure: &str) {
     eprintln!("{figure}");
 }
 
@@ -107,7 +107,7 @@ fn a_large_page_and_twenty_readers() {
     for round in 0..3 {
         let alone = coordinator_s_a_result(&site, &format!("alone{round}"), false);
         let read = coordinator_s_a_result(&site, &format!("read{round}"), true);
-        tell(&format!(
+        print_figure(&format!(
             "coordinator: {:.1} us of processor time a result alone, {:.1} us with {READERS} readers, ratio {:.3}",
             1e6 * alone,
             1e6 * read,
@@ -153,7 +153,7 @@ fn large_page(site: &Site, browser: &Browser) {
     let paint = browser
         .script("return performance.getEntriesByName('first-contentful-paint')[0].startTime");
     let size = browser.script("return document.documentElement.outerHTML.length");
-    tell(&format!(
+    print_figure(&format!(
         "page of {results} evaluations and {WORKERS} workers: first paint {paint} ms, {size} characters"
     ));
     let before = processor_s(server.pid());
@@ -167,7 +167,7 @@ fn large_page(site: &Site, browser: &Browser) {
     );
     thread::sleep(Duration::from_secs(10));
     let longest = browser.script("return [window.tasks, window.longest]");
-    tell(&format!(
+    print_figure(&format!(
         "updates in 10 s: [tasks of more than 50 ms, the longest in ms] = {longest}; the dashboard used {:.1} s of processor time",
         processor_s(server.pid()) - before
     ));

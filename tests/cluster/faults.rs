@@ -1,6 +1,7 @@
 //! Tests with workers that are killed, frozen or asked to end.
 use super::{LIMIT, collect, submit};
-use dispatch::runtime::{BenchPlan, BenchWorkers, Dispatch, bench};
+use dispatch::bench::{self, BenchPlan};
+use dispatch::runtime::Dispatch;
 use journal::event::JobReason;
 use protocol::{id::JobId, job::Job};
 use rustix::process::Signal;
@@ -199,24 +200,19 @@ async fn a_worker_that_is_told_to_end_gives_its_jobs_back_and_says_nothing() {
 #[tokio::test(flavor = "multi_thread")]
 async fn the_bench_measures_the_bus() {
     let folder = tempfile::tempdir().unwrap();
-    for crew in [BenchWorkers::Processes, BenchWorkers::Sessions] {
-        let folder = folder.path().join(format!("{crew:?}"));
-        let plan = BenchPlan {
-            by: crew,
-            workers: 2,
-            jobs: 400,
-            result_bytes: 1000,
-            silent: None,
-        };
-        let mut options = options(&folder, None, 0);
-        // jobs that do nothing need no model, and sessions have none
-        options.case.model.kind.clear();
-        let result = bench(options, plan).await.unwrap();
-        eprintln!("{result:?}");
-        assert!(result.rtt_median_ms > 0.0 && result.rtt_median_ms <= result.rtt_p99_ms);
-        assert!(
-            result.jobs_per_s > 50.0 && result.coordinator_rss_mib > 1.0,
-            "{result:?}"
-        );
-    }
+    let plan = BenchPlan {
+        workers: 2,
+        jobs: 400,
+        result_bytes: 1000,
+    };
+    let result = bench::measure(options(folder.path(), None, 0), plan)
+        .await
+        .unwrap();
+    eprintln!("{result:?}");
+    let trips = result.rtt_ms;
+    assert!(trips.median > 0.0 && trips.median <= trips.p99);
+    assert!(
+        result.jobs_per_s > 50.0 && result.coordinator_rss_mib > 1.0,
+        "{result:?}"
+    );
 }

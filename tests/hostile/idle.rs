@@ -1,6 +1,6 @@
 //! Tests with peers that connect and then send nothing, as many as the machine allows.
 use super::{LIMIT, MEASURING, processor_us, rate};
-use dispatch::runtime::{Dispatch, DispatchOptions};
+use dispatch::runtime::Dispatch;
 use std::{
     collections::BTreeMap,
     io::{ErrorKind, Read},
@@ -64,13 +64,9 @@ async fn handshakes_that_are_never_finished_keep_nobody_out() {
     let keys = folder.path().join("keys");
     make(&keys, &[]);
     let locator = free_quic_locator();
-    let dispatch = Dispatch::open(DispatchOptions {
-        pause_limit: dispatch::runtime::PAUSE_LIMIT,
-        tls: Some(keys.clone()),
-        ..options(&folder.path().join("run"), Some(&locator), 0)
-    })
-    .await
-    .unwrap();
+    let mut options = options(&folder.path().join("run"), Some(&locator), 0);
+    options.access.tls = Some(keys.clone());
+    let dispatch = Dispatch::open(options).await.unwrap();
     let program = worker_program();
     let datagrams = first_datagrams(BEGUN).await;
     let silent: Vec<UdpSocket> = datagrams

@@ -18,7 +18,7 @@ use search::strategy::{
     Settings, build,
     levenberg::{Derivatives, DescentTolerance, LevenbergSettings},
     memetic::MemeticSettings,
-    quick::{QuickSettings, SearchPart},
+    staged::{StageSettings, StagedSettings},
 };
 use std::collections::VecDeque;
 use study::{
@@ -222,10 +222,10 @@ impl Watch<ProgressView> for Unseen {
     fn progress(&mut self, _: &ProgressView, _: &dyn Fn() -> Snapshot) {}
 }
 
-fn calibrated(case: &Case, parts: Vec<SearchPart>) -> Calibrated {
+fn calibrated(case: &Case, parts: Vec<StageSettings>) -> Calibrated {
     let space = Space::new(&case.unknowns).unwrap();
     let trust = space.axes().iter().map(|axis| axis.trust).collect();
-    let settings = Settings::of(&QuickSettings { trust, parts });
+    let settings = Settings::of(&StagedSettings { trust, parts });
     let mut strategy = build(&settings, &space, 1).unwrap();
     let mut here = LocalEvaluator {
         prepared: Prepared::new(worker::SIMULATORS, case).unwrap(),
@@ -263,14 +263,14 @@ fn a_calibration_finds_the_sizes_of_effects() {
     let found = calibrated(
         &case,
         vec![
-            SearchPart::Memetic(MemeticSettings {
+            StageSettings::Memetic(MemeticSettings {
                 population: 4,
                 generations: 1,
                 crossover_trials: 1,
                 mutation_trials: 1,
                 ..MemeticSettings::paper()
             }),
-            SearchPart::LeastSquares(LevenbergSettings {
+            StageSettings::LeastSquares(LevenbergSettings {
                 starts: 1,
                 iterations: 5,
                 apart: 0.03,

@@ -4,7 +4,7 @@
 //! `test-network-coordinator RUN_DIR LOCATOR KEYS JOBS DELAY_MS`; each line is `MS workers N done N lost N
 //! repeated N duplicates N`, the last one begins with `end`. Exits with an error if a job has an unexpected
 //! result.
-use dispatch::runtime::{Dispatch, DispatchOptions, Snapshot};
+use dispatch::runtime::{Dispatch, Snapshot};
 use journal::event::JobReason;
 use protocol::id::JobId;
 use std::{
@@ -27,12 +27,9 @@ async fn main() -> Result<(), Box<dyn Error>> {
     };
     let (jobs, delay_ms): (u64, u32) = (jobs.parse()?, delay_ms.parse()?);
     let begun = Instant::now();
-    let mut dispatch = Dispatch::open(DispatchOptions {
-        pause_limit: dispatch::runtime::PAUSE_LIMIT,
-        tls: Some(PathBuf::from(keys)),
-        ..tests::options(Path::new(run_dir), Some(locator), 0)
-    })
-    .await?;
+    let mut options = tests::options(Path::new(run_dir), Some(locator), 0);
+    options.access.tls = Some(PathBuf::from(keys));
+    let mut dispatch = Dispatch::open(options).await?;
     for n in 0..jobs {
         dispatch.submit(JobId(n), tests::job(n, delay_ms), JobReason::default())?;
     }

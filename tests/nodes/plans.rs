@@ -76,6 +76,13 @@ fn printed_in(folder: &Path, program: &str, words: &[&str]) -> Option<String> {
     Some(printed)
 }
 
+/// Asserts that a text contains every one of `parts`.
+fn contains_all(text: &str, parts: &[&str]) {
+    for part in parts {
+        assert!(text.contains(part), "{part}: {text}");
+    }
+}
+
 #[test]
 fn plans_are_printed_without_anybody_in_reach_and_nothing_is_written() {
     let site = Site::new(1);
@@ -99,7 +106,7 @@ fn plans_are_printed_without_anybody_in_reach_and_nothing_is_written() {
             prologue,
         ],
     );
-    let k8s = printed(&site, &["--k8s", "replicas=4,namespace=spare"]);
+    let k8s = printed(&site, &["--k8s", "replicas=3,namespace=spare,cpu=2"]);
     let systemd = printed(&site, &["--systemd", "slots=2"]);
     assert_eq!(
         contents(site.folder.path()),
@@ -119,35 +126,36 @@ fn plans_are_printed_without_anybody_in_reach_and_nothing_is_written() {
         checked("shellcheck", &[], &file);
     }
 
-    assert!(
-        ssh.contains("-p 2222 me@one") && ssh.contains("--slots 3"),
-        "{ssh}"
-    );
-    assert!(ssh.contains("module load gcc"), "{ssh}");
+    contains_all(&ssh, &["-p 2222 me@one", "--slots 3", "module load gcc"]);
     let batch = site.path("batch.sh");
-    assert!(
-        slurm.contains("sbatch --nodes=4 --time=02:00:00 '--account=x y'"),
-        "{slurm}"
-    );
+    let submission = "sbatch --nodes=4 --time=02:00:00 '--account=x y'";
+    contains_all(&slurm, &[submission]);
     fs::write(&batch, read_by(&slurm, " <<'HORSEHEAD_END'\n")).unwrap();
     checked("shellcheck", &[], &batch);
+    let batch = fs::read_to_string(&batch).unwrap();
+    let locator = format!("export HORSEHEAD_CONNECT={}\n", site.locator);
+    let exported = [&locator, "export HORSEHEAD_TLS=", "--idle-timeout 3600\n"];
+    contains_all(&batch, &exported);
+    let (before_checks, _) = batch.split_once("set -euo pipefail").unwrap();
+    assert!(before_checks.contains("module load gcc"), "{batch}");
     let unit = site.path("horsehead-worker.service");
     fs::write(&unit, read_by(&systemd, " <<'HORSEHEAD_END'\n")).unwrap();
     checked("systemd-analyze", &["verify", "--user"], &unit);
     let manifests = site.path("manifests.yaml");
     fs::write(&manifests, read_by(&k8s, "-f - <<'HORSEHEAD_END'\n")).unwrap();
     checked("kubernetes-validate", &["--strict"], &manifests);
-    let objects: Vec<Value> = fs::read_to_string(&manifests)
-        .unwrap()
-        .split("---\n")
-        .filter(|part| !part.is_empty())
-        .map(|part| serde_json::from_str(part).unwrap())
-        .collect();
-    assert_eq!(objects[0]["spec"]["replicas"], 4);
-    let port: u16 = site.locator.rsplit(':').next().unwrap().parse().unwrap();
-    let coordinator = &objects[1]["spec"]["egress"][0];
-    assert_eq!(coordinator["ports"][0]["port"], port);
-    assert_eq!(coordinator["to"][0]["ipBlock"]["cidr"], "127.0.0.1/32");
+    let manifests = fs::read_to_string(&manifests).unwrap();
+    let port = site.locator.rsplit(':').next().unwrap();
+    let parts = [
+        "replicas: 3",
+        r#""cpu":"2""#,
+        "/keys",
+        r#"cidr":"127.0.0.1/32""#,
+        &format!("port: {port}"),
+        &format!(r#""--connect","{}""#, site.locator),
+    ];
+    contains_all(&manifests, &parts);
+    assert!(!manifests.contains("envFrom"), "{manifests}");
 }
 
 /// Checks that running a printed plan starts the same worker as the launch itself.

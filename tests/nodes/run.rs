@@ -1,6 +1,6 @@
 //! Test of launching, draining, expelling and stopping workers during a run.
 use super::*;
-use dispatch::runtime::{Dispatch, DispatchOptions};
+use dispatch::runtime::Dispatch;
 use journal::event::JobReason;
 use protocol::id::JobId;
 use std::time::{Duration, Instant};
@@ -9,11 +9,8 @@ const LIMIT: Duration = Duration::from_secs(40);
 
 /// Opens a run that accepts remote workers, with jobs that each take `delay_ms`.
 async fn open(site: &Site, jobs: u64, delay_ms: u32) -> Dispatch {
-    let options = DispatchOptions {
-        pause_limit: dispatch::runtime::PAUSE_LIMIT,
-        tls: Some(site.path("keys")),
-        ..tests::options(&site.path("run"), Some(&site.locator), 0)
-    };
+    let mut options = tests::options(&site.path("run"), Some(&site.locator), 0);
+    options.access.tls = Some(site.path("keys"));
     let mut run = Dispatch::open(options).await.unwrap();
     for n in 0..jobs {
         run.submit(JobId(n), tests::job(n, delay_ms), JobReason::default())

@@ -234,7 +234,7 @@ fn follow_readme(spare: &Spare) -> Value {
 /// Measures the scaling of two searches on two and on four of the hosts.
 fn check_scaling(spare: &Spare, hosts: &str) {
     let words = "sweep scaling case --presets window,least-squares --evaluations 60 --crews 0 \
-                 --sleeping 0 --projected 80 --slots 2 --nodes 2,4 --run scaling --ssh";
+                 --slots 2 --nodes 2,4 --run scaling --ssh";
     let words: Vec<&str> = words.split_whitespace().chain([hosts]).collect();
     let object = spare.json(&words);
     let rows = object["rows"].as_array().unwrap();
@@ -249,8 +249,6 @@ fn check_scaling(spare: &Spare, hosts: &str) {
             ("remote", "least-squares", 4),
             ("remote", "window", 8),
             ("remote", "least-squares", 8),
-            ("projected", "window", 80),
-            ("projected", "least-squares", 80),
         ]
     );
 }

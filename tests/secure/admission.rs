@@ -220,7 +220,7 @@ async fn nothing_is_listened_on_without_certificates() {
         ("quic/127.0.0.1:0", "give --tls DIR"),
     ] {
         let mut options = tests::options(&run, Some(locator), 0);
-        options.insecure = false;
+        options.access.insecure = false;
         let opened = Dispatch::open(options).await;
         let error = opened.err().map(|error: DispatchError| error.to_string());
         assert!(

@@ -22,11 +22,9 @@ const LIMIT: Duration = Duration::from_mins(1);
 
 /// Returns options of a run that listens with the given key material.
 fn options(run_dir: &Path, locator: &str, keys: &Path, local_workers: usize) -> DispatchOptions {
-    DispatchOptions {
-        pause_limit: dispatch::runtime::PAUSE_LIMIT,
-        tls: Some(keys.to_owned()),
-        ..tests::options(run_dir, Some(locator), local_workers)
-    }
+    let mut options = tests::options(run_dir, Some(locator), local_workers);
+    options.access.tls = Some(keys.to_owned());
+    options
 }
 
 /// Returns a command that starts a worker with the given key material, if any.

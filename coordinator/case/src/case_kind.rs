@@ -1,4 +1,4 @@
-//! Interface through which a kind of model customises how its cases are read.
+//! What the parts of the program ask of a kind of model: how its cases are read, and how its quantities are called.
 use crate::{
     error::CaseError,
     general,
@@ -6,15 +6,15 @@ use crate::{
     source::RecordFolder,
     summary::{self, CaseSummary},
 };
-use protocol::{case::Case, job::Numerics, wire::WireError};
+use protocol::{
+    case::{Case, Unknown},
+    job::Numerics,
+    wire::WireError,
+};
 use record::Curves;
 
-/// Kind of model, as seen by the code that reads cases; every method but `name` has a default for a generic
-/// model.
+/// Kind of model; every method has a default for any model.
 pub trait ModelKind: Sync {
-    /// Returns the name of the kind, as `[model] kind` of a case file states it.
-    fn name(&self) -> &'static str;
-
     /// Reads a case.
     ///
     /// # Errors
@@ -43,6 +43,24 @@ pub trait ModelKind: Sync {
             format!("conditions[{condition}]"),
             format!("state `record` for a [[channels]] table of condition `{name}`"),
         )
+    }
+
+    /// Returns the description of the abscissas' origin, such as " from bottom dead centre", appended to an
+    /// abscissa's name in the titles of axes; empty where none is needed.
+    fn abscissa_origin(&self) -> &'static str {
+        ""
+    }
+
+    /// Returns the title of the group of table rows to which an unknown belongs; parameters of effects have a
+    /// group of their own.
+    fn group(&self, _: &Unknown) -> &'static str {
+        "Unknowns"
+    }
+
+    /// Returns the repetition frequency of a periodic process under a condition \[Hz\]; `None` where nothing
+    /// is periodic.
+    fn frequency_hz(&self, _: &Case, _condition: usize) -> Option<f64> {
+        None
     }
 
     /// Returns the key under which the names of the unknowns stand in JSON output.
@@ -108,11 +126,8 @@ pub trait ModelKind: Sync {
     }
 }
 
-/// [`ModelKind`] of every model without a case format of its own; keeps all default methods.
-pub(crate) struct GenericKind;
+/// Any model without a form of its own, which has all default methods.
+#[derive(Clone, Copy, Debug)]
+pub struct OtherModel;
 
-impl ModelKind for GenericKind {
-    fn name(&self) -> &'static str {
-        ""
-    }
-}
+impl ModelKind for OtherModel {}

@@ -77,18 +77,18 @@ impl Document {
     /// Builds the error for a value that is not allowed in a field, with the field's source line.
     pub fn field(
         &self,
-        way: &[DocumentStep<'_>],
+        keys: &[DocumentStep<'_>],
         value: impl Display,
         allowed: impl Into<String>,
         help: &str,
     ) -> CaseError {
         CaseError::Field {
             path: self.path.as_path().into(),
-            field: dotted(way).into(),
+            field: dotted(keys).into(),
             value: value.to_string().into(),
             allowed: allowed.into().into(),
             excerpt: self
-                .span(way)
+                .span(keys)
                 .map(|span| self.excerpt(span))
                 .unwrap_or_default()
                 .into(),
@@ -110,9 +110,9 @@ impl Document {
         if range.contains(&value) {
             return Ok(());
         }
-        let way: Vec<DocumentStep<'_>> = dotted.split('.').map(DocumentStep::Key).collect();
+        let keys: Vec<DocumentStep<'_>> = dotted.split('.').map(DocumentStep::Key).collect();
         Err(self.field(
-            &way,
+            &keys,
             value,
             format!(
                 "{} to {} {unit}",
@@ -142,9 +142,9 @@ impl Document {
     }
 
     /// Returns the byte range of a field in the text of the TOML file.
-    fn span(&self, way: &[DocumentStep<'_>]) -> Option<Range<usize>> {
+    fn span(&self, keys: &[DocumentStep<'_>]) -> Option<Range<usize>> {
         let root = DeTable::parse(&self.text).ok()?;
-        let (first, rest) = way.split_first()?;
+        let (first, rest) = keys.split_first()?;
         let DocumentStep::Key(key) = first else {
             return None;
         };
@@ -197,9 +197,9 @@ fn around(line: &str, column: usize) -> (String, usize) {
 }
 
 /// Formats the path to a field as in messages: `conditions[0].speed_rpm`.
-fn dotted(way: &[DocumentStep<'_>]) -> String {
+fn dotted(keys: &[DocumentStep<'_>]) -> String {
     let mut text = String::new();
-    for step in way {
+    for step in keys {
         match step {
             DocumentStep::Key(key) if text.is_empty() => text.push_str(key),
             DocumentStep::Key(key) => {

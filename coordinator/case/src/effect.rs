@@ -129,7 +129,7 @@ impl CaseEffect {
 pub fn check(document: &Document, effects: &[CaseEffect], units: &[&str]) -> Result<(), CaseError> {
     let mut faults = Faults::default();
     for (index, effect) in effects.iter().enumerate() {
-        let way = |key| {
+        let keys = |key| {
             [
                 DocumentStep::Key("effects"),
                 DocumentStep::Index(index),
@@ -139,14 +139,14 @@ pub fn check(document: &Document, effects: &[CaseEffect], units: &[&str]) -> Res
         let quoted = format!("\"{}\"", effect.id);
         if !is_name(&effect.id) {
             faults.add(document.field(
-                &way("id"),
+                &keys("id"),
                 quoted,
                 "an identifier of small letters, digits, `_` and `.`",
                 "write the identifier of an effect, as `pivot_friction`",
             ));
         } else if effects[..index].iter().any(|other| other.id == effect.id) {
             faults.add(document.field(
-                &way("id"),
+                &keys("id"),
                 quoted,
                 "an effect that no other table has",
                 "duplicate effect: put all its parameters into one table",
@@ -185,7 +185,7 @@ pub fn check_known(
         };
         let names: Vec<&str> = own.parameters.iter().map(|p| p.name.as_str()).collect();
         for (name, parameter) in &effect.parameters {
-            let way = [
+            let keys = [
                 table[0],
                 table[1],
                 DocumentStep::Key("parameters"),
@@ -193,14 +193,14 @@ pub fn check_known(
             ];
             let Some(known) = own.parameters.iter().find(|known| known.name == *name) else {
                 faults.add(document.field(
-                    &way,
+                    &keys,
                     parameter.value,
                     format!("a parameter of {}: {}", own.id, names.join(", ")),
                     &suggestion(name, &names),
                 ));
                 continue;
             };
-            let to = |key| [way[0], way[1], way[2], way[3], DocumentStep::Key(key)];
+            let to = |key| [keys[0], keys[1], keys[2], keys[3], DocumentStep::Key(key)];
             if parameter.unit != known.unit {
                 faults.add(document.field(
                     &to("unit"),
@@ -276,7 +276,7 @@ fn check_parameter(
     name: &str,
     parameter: &CaseParameter,
 ) -> Result<(), CaseError> {
-    let way = |key| {
+    let keys = |key| {
         [
             DocumentStep::Key("effects"),
             DocumentStep::Index(index),
@@ -288,7 +288,7 @@ fn check_parameter(
     let unit = parameter.unit.as_str();
     if !parameter.value.is_finite() {
         return Err(document.field(
-            &way("value"),
+            &keys("value"),
             parameter.value,
             format!("a finite number of {unit}"),
             "correct the value; the workers check its bounds",
@@ -307,7 +307,7 @@ fn check_parameter(
         }
         let apart = if is_search { "different " } else { "" };
         return Err(document.field(
-            &way(key),
+            &keys(key),
             format!("[{low}, {high}]"),
             format!(
                 "two {apart}finite numbers around the value, {}",

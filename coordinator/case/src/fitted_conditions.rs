@@ -69,7 +69,7 @@ impl FittedConditions {
         document: &Document,
         conditions: &[(&str, bool)],
     ) -> Result<(usize, Vec<WeightedCondition>), CaseError> {
-        let way = [
+        let keys = [
             DocumentStep::Key("objective"),
             DocumentStep::Key("condition"),
         ];
@@ -77,7 +77,7 @@ impl FittedConditions {
         for (at, (name, weight)) in self.all().into_iter().enumerate() {
             let condition = position(document, name, conditions)?;
             let refuse = |wanted: &str, help: &str| {
-                Err(document.field(&way, format!("\"{name}\""), wanted, help))
+                Err(document.field(&keys, format!("\"{name}\""), wanted, help))
             };
             if found.iter().any(|own| own.condition == condition) {
                 return refuse(
@@ -102,14 +102,14 @@ impl FittedConditions {
             }
             let weight = weight.unwrap_or(1.0);
             if !(weight > 0.0 && weight <= 1.0e6) {
-                let way = [
-                    way[0],
-                    way[1],
+                let keys = [
+                    keys[0],
+                    keys[1],
                     DocumentStep::Index(at),
                     DocumentStep::Key("weight"),
                 ];
                 return Err(document.field(
-                    &way,
+                    &keys,
                     weight,
                     "above 0, at most 1e6",
                     "remove a condition that is not part of the objective",
@@ -120,7 +120,7 @@ impl FittedConditions {
         match found.split_first() {
             Some((first, others)) => Ok((first.condition, others.to_vec())),
             None => Err(document.field(
-                &way,
+                &keys,
                 "[]",
                 "at least one condition",
                 "write condition = \"NAME\", or a list of names",

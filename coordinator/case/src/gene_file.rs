@@ -124,8 +124,8 @@ impl GeneFile {
         }
         let values = case.unknowns.iter().map(|unknown| {
             if let Some(entry) = content.values.get(&unknown.name) {
-                let way = [DocumentStep::Key(&unknown.name)];
-                return value(document, &way, unknown, entry);
+                let keys = [DocumentStep::Key(&unknown.name)];
+                return value(document, &keys, unknown, entry);
             }
             if let Some((id, name)) = unknown.of_effect() {
                 let mut effects = content.effects.iter().enumerate();
@@ -217,11 +217,11 @@ fn check_effect(
 /// Converts the value of a gene-file entry to the unit in which the case states the unknown.
 fn value(
     document: &Document,
-    way: &[DocumentStep<'_>],
+    keys: &[DocumentStep<'_>],
     unknown: &Unknown,
     entry: &GeneValue,
 ) -> Result<f64, CaseError> {
-    let way = |key| [way, &[DocumentStep::Key(key)]].concat();
+    let keys = |key| [keys, &[DocumentStep::Key(key)]].concat();
     let GeneValue { value, unit } = entry;
     let units = Unit::named(&unknown.unit).zip(Unit::named(unit));
     let fitting = units.filter(|(own, stated)| own.si() == stated.si());
@@ -232,7 +232,7 @@ fn value(
     };
     if *unit != unknown.unit && fitting.is_none() {
         return Err(document.field(
-            &way("unit"),
+            &keys("unit"),
             format!("\"{unit}\""),
             format!("\"{}\", as in the case", unknown.unit),
             &convert(unit, &unknown.unit),
@@ -244,7 +244,7 @@ fn value(
     };
     if !sound {
         return Err(document.field(
-            &way("value"),
+            &keys("value"),
             value,
             format!("a {allowed} number of {unit}"),
             "correct the value; the workers check its bounds",

@@ -1,62 +1,54 @@
-//! Registry of the kinds of models that have their own case format. Cases of any other kind are read in the
-//! general form.
-use crate::{
-    case_kind::{GenericKind, ModelKind},
-    command::kind::CommandKind,
-    document::{Document, DocumentStep},
-    error::CaseError,
-    pumping_unit::kind::PumpingUnitKind,
+//! Kinds of models that this program knows; a model of any other kind is read, shown and printed in the general form.
+//!
+//! A kind has its name here, and an implementation of a trait in each part of the program in which it has a form of its
+//! own: of [`ModelKind`] here, of `ModelReport` in `report`, of `ModelOutput` in the command line.
+use crate::case_kind::ModelKind;
+use protocol::{case::Case, external, pumping_unit::Machine};
+
+pub use crate::{
+    case_kind::OtherModel, command::kind::CommandModel, pumping_unit::kind::PumpingUnitModel,
 };
-use protocol::case::Case;
-use serde::Deserialize;
 
-const ALL: &[&dyn ModelKind] = &[&PumpingUnitKind, &CommandKind];
-
-/// Returns the part of a model kind's name before the colon, as `command` of `command:decay`; the rest names
-/// an allow-list entry.
-pub fn family(name: &str) -> &str {
-    name.split_once(':').map_or(name, |(family, _)| family)
+/// Kind of a model, as this program distinguishes them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum KnownKind {
+    /// Pumping unit with double horse heads.
+    PumpingUnit,
+    /// Program of the user's own.
+    Command,
+    /// Any other model, which only its workers know.
+    Other,
 }
 
-/// Returns the kind of model with a name; a generic kind if the name is not registered.
-pub fn named(name: &str) -> &'static dyn ModelKind {
-    let name = family(name);
-    let mut all = ALL.iter().copied();
-    all.find(|kind| kind.name() == name).unwrap_or(&GenericKind)
+impl KnownKind {
+    /// All kinds.
+    pub const ALL: [Self; 3] = [Self::PumpingUnit, Self::Command, Self::Other];
+
+    /// Returns the kind with a name, of which the part before a colon counts, as `command` of `command:decay`.
+    pub fn named(name: &str) -> Self {
+        match name.split_once(':').map_or(name, |(kind, _)| kind) {
+            Machine::KIND => Self::PumpingUnit,
+            external::KIND => Self::Command,
+            _ => Self::Other,
+        }
+    }
+
+    /// Returns the kind of model of a case.
+    pub fn of(case: &Case) -> Self {
+        Self::named(&case.model.kind)
+    }
+
+    /// Returns how cases of this kind are read.
+    pub const fn form(self) -> &'static dyn ModelKind {
+        match self {
+            Self::PumpingUnit => &PumpingUnitModel,
+            Self::Command => &CommandModel,
+            Self::Other => &OtherModel,
+        }
+    }
 }
 
-/// Returns the kind of model of a case.
+/// Returns how cases of a case's kind of model are read.
 pub fn of(case: &Case) -> &'static dyn ModelKind {
-    named(&case.model.kind)
-}
-
-/// Part of a case file that cases of every kind contain.
-#[derive(Debug, Deserialize)]
-struct AnyCase {
-    model: Option<AnyModel>,
-}
-
-/// Table `[model]`, of which only `kind` is read.
-#[derive(Debug, Deserialize)]
-struct AnyModel {
-    kind: Option<String>,
-}
-
-/// Returns the kind of model that a case file states.
-///
-/// # Errors
-/// Returns an error if no kind is stated; a guess could misinterpret the case.
-pub(crate) fn stated(document: &Document) -> Result<String, CaseError> {
-    let kind = document
-        .parse::<AnyCase>()?
-        .model
-        .and_then(|model| model.kind);
-    kind.filter(|kind| !kind.is_empty()).ok_or_else(|| {
-        document.field(
-            &[DocumentStep::Key("model"), DocumentStep::Key("kind")],
-            "absent",
-            "the name of a kind of model, which workers announce",
-            "add a table [model] with kind; that of a pumping unit is kind = \"dhh\"",
-        )
-    })
+    KnownKind::of(case).form()
 }

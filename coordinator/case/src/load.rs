@@ -1,9 +1,9 @@
 //! Loading of a case folder as a [`Case`], by the reader of the model kind that `case.toml` names.
 use super::{
     error::CaseError,
-    kind,
+    kind::KnownKind,
     loaded::Loaded,
-    source::{Overrides, RecordFolder, document},
+    source::{Overrides, RecordFolder, document, stated_kind},
     summary::CaseSummary,
 };
 use protocol::case::Case;
@@ -23,7 +23,9 @@ pub fn load(folder: &Path, overrides: &Overrides) -> Result<Case, CaseError> {
 /// As [`load`].
 pub fn load_with_notes(folder: &Path, overrides: &Overrides) -> Result<Loaded, CaseError> {
     let document = document(folder, overrides)?;
-    kind::named(&kind::stated(&document)?).read(&RecordFolder::new(folder, overrides, &document))
+    KnownKind::named(&stated_kind(&document)?)
+        .form()
+        .read(&RecordFolder::new(folder, overrides, &document))
 }
 
 /// Loads a case folder and summarises its contents, for `horsehead case check`.
@@ -32,5 +34,7 @@ pub fn load_with_notes(folder: &Path, overrides: &Overrides) -> Result<Loaded, C
 /// As [`load`].
 pub fn check(folder: &Path, overrides: &Overrides) -> Result<CaseSummary, CaseError> {
     let document = document(folder, overrides)?;
-    kind::named(&kind::stated(&document)?).check(&RecordFolder::new(folder, overrides, &document))
+    KnownKind::named(&stated_kind(&document)?)
+        .form()
+        .check(&RecordFolder::new(folder, overrides, &document))
 }

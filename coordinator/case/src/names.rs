@@ -12,8 +12,8 @@ use std::collections::BTreeSet;
 /// Returns an error for the first name that is empty, duplicate or has characters not allowed on command
 /// lines and in file names, or if the list is empty.
 pub fn check(document: &Document, list: &str, what: &str, names: &[&str]) -> Result<(), CaseError> {
-    check_list(document, (list, what), names, |way, name, is_there| {
-        check_one(document, way, what, name, is_there)
+    check_list(document, (list, what), names, |keys, name, is_there| {
+        check_one(document, keys, what, name, is_there)
     })
 }
 
@@ -29,14 +29,14 @@ pub fn check_program_names(
     names: &[&str],
 ) -> Result<(), CaseError> {
     let plain = |c: char| c.is_ascii_graphic() && !",\"'`{}=#\\".contains(c);
-    check_list(document, (list, what), names, |way, name, is_there| {
+    check_list(document, (list, what), names, |keys, name, is_there| {
         // the key under which gene files state effects
         let is_allowed = name != "effects" && name.chars().all(plain);
         let words = (
             "a name other than `effects`, without blanks, commas, quotes, braces, `=`, `#` and `\\`",
             "the name is a key of gene files and is typed on command lines, as `stiffness`",
         );
-        check_name(document, way, what, (name, is_allowed, is_there), words)
+        check_name(document, keys, what, (name, is_allowed, is_there), words)
     })
 }
 
@@ -56,12 +56,12 @@ fn check_list(
     }
     let mut seen = BTreeSet::new();
     for (index, name) in names.iter().enumerate() {
-        let way = [
+        let keys = [
             DocumentStep::Key(list),
             DocumentStep::Index(index),
             DocumentStep::Key("name"),
         ];
-        check(&way, name, !seen.insert(*name))?;
+        check(&keys, name, !seen.insert(*name))?;
     }
     Ok(())
 }
@@ -72,7 +72,7 @@ fn check_list(
 /// As [`check`].
 pub fn check_one(
     document: &Document,
-    way: &[DocumentStep<'_>],
+    keys: &[DocumentStep<'_>],
     what: &str,
     name: &str,
     is_there: bool,
@@ -83,25 +83,25 @@ pub fn check_one(
         "a short name of letters, digits, `-`, `_` and `.`",
         "the name is typed on command lines and becomes part of file names, as `5rpm`",
     );
-    check_name(document, way, what, (name, is_allowed, is_there), words)
+    check_name(document, keys, what, (name, is_allowed, is_there), words)
 }
 
 /// Checks that a name is not empty, has only allowed characters and is that of no earlier table; `allowed` and `help` are the
 /// words about its characters.
 fn check_name(
     document: &Document,
-    way: &[DocumentStep<'_>],
+    keys: &[DocumentStep<'_>],
     what: &str,
     (name, is_allowed, is_there): (&str, bool, bool),
     (allowed, help): (&str, &str),
 ) -> Result<(), CaseError> {
     let quoted = format!("\"{name}\"");
     if name.is_empty() || !is_allowed {
-        return Err(document.field(way, quoted, allowed, help));
+        return Err(document.field(keys, quoted, allowed, help));
     }
     if is_there {
         return Err(document.field(
-            way,
+            keys,
             quoted,
             format!("a name that no other {what} has"),
             &format!("duplicate {what}: rename or remove one of the two"),

@@ -45,7 +45,7 @@ pub struct Deviation {
 }
 
 impl PriorEntry {
-    /// Converts the entry to the prior of an unknown; `way` is its location in the file, for error messages.
+    /// Converts the entry to the prior of an unknown; `keys` is its location in the file, for error messages.
     ///
     /// # Errors
     /// Returns an error if the numbers are not a valid prior on the scale of the unknown.
@@ -53,12 +53,12 @@ impl PriorEntry {
         self,
         unknown: &Unknown,
         document: &Document,
-        way: &[DocumentStep<'_>],
+        keys: &[DocumentStep<'_>],
     ) -> Result<Prior, CaseError> {
         let logarithmic = unknown.scale == Scale::Logarithmic;
         let refused = |found: String, allowed: &str| {
             let remedy = "correct it, or leave it out: then only the bounds are known";
-            Err(document.field(way, found, allowed, remedy))
+            Err(document.field(keys, found, allowed, remedy))
         };
         match self {
             Self::Interval([low, high]) => {

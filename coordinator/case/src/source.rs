@@ -1,8 +1,9 @@
-//! Location of a case file and of the measured files that replace its own.
+//! Location of a case file and of the measured files that replace its own, and the kind of model that it states.
 use super::{
-    document::Document,
+    document::{Document, DocumentStep},
     error::{CaseError, damaged},
 };
+use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
 /// Parts of a case that the command line replaces.
@@ -51,4 +52,35 @@ pub fn document(folder: &Path, overrides: &Overrides) -> Result<Document, CaseEr
         &folder.join("case.toml"),
         "the description of the case; `horsehead case new` writes a template",
     )
+}
+
+/// Part of a case file that cases of every kind contain.
+#[derive(Debug, Deserialize)]
+struct AnyCase {
+    model: Option<AnyModel>,
+}
+
+/// Table `[model]`, of which only `kind` is read.
+#[derive(Debug, Deserialize)]
+struct AnyModel {
+    kind: Option<String>,
+}
+
+/// Returns the kind of model that a case file states.
+///
+/// # Errors
+/// Returns an error if no kind is stated; a guess could misinterpret the case.
+pub(crate) fn stated_kind(document: &Document) -> Result<String, CaseError> {
+    let kind = document
+        .parse::<AnyCase>()?
+        .model
+        .and_then(|model| model.kind);
+    kind.filter(|kind| !kind.is_empty()).ok_or_else(|| {
+        document.field(
+            &[DocumentStep::Key("model"), DocumentStep::Key("kind")],
+            "absent",
+            "the name of a kind of model, which workers announce",
+            "add a table [model] with kind; that of a pumping unit is kind = \"dhh\"",
+        )
+    })
 }

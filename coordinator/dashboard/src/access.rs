@@ -22,7 +22,7 @@ pub(super) struct Hosts(Arc<[String]>);
 
 /// Returns the values of the header `Host` under which a server at an address may be reached: its address, and
 /// on loopback the name `localhost` too.
-pub fn allowed_hosts(address: SocketAddr) -> Vec<String> {
+pub(crate) fn allowed_hosts(address: SocketAddr) -> Vec<String> {
     let port = address.port();
     let mut hosts = vec![address.to_string()];
     if address.ip().is_loopback() {

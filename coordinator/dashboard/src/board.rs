@@ -76,11 +76,11 @@ pub struct PageState {
 }
 
 /// Reader's end of a page.
-pub type PageReader = watch::Receiver<Arc<PageState>>;
+pub(crate) type PageReader = watch::Receiver<Arc<PageState>>;
 
 /// Writer's end of a page.
 #[derive(Debug)]
-pub struct Board {
+pub(crate) struct Board {
     shown: watch::Sender<Arc<PageState>>,
     version: Version,
     published: BTreeMap<String, Instant>,
@@ -88,7 +88,7 @@ pub struct Board {
 
 impl Board {
     /// Creates an empty page.
-    pub fn new(title: &str, run: &str) -> Self {
+    pub(crate) fn new(title: &str, run: &str) -> Self {
         // the random state of a hash map differs from process to process, and from map to map
         let version = Version {
             board: RandomState::new().hash_one(run),
@@ -108,13 +108,18 @@ impl Board {
     }
 
     /// Returns a reader of the page.
-    pub fn reader(&self) -> PageReader {
+    pub(crate) fn reader(&self) -> PageReader {
         self.shown.subscribe()
     }
 
     /// Publishes the sections of the page. Large sections that changed a short
     /// time ago are kept as they are, unless `last` states that no further publication follows.
-    pub fn publish(&mut self, (title, state): (&str, &str), sections: &[Section], last: bool) {
+    pub(crate) fn publish(
+        &mut self,
+        (title, state): (&str, &str),
+        sections: &[Section],
+        last: bool,
+    ) {
         self.version.revision += 1;
         let before = self.shown.borrow().clone();
         let (now, version) = (Instant::now(), self.version);

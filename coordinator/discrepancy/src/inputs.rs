@@ -1,8 +1,8 @@
 //! Inputs of a diagnosis, with its thresholds.
-use crate::baseline::budget::cost_with_derivatives;
-use crate::laboratory::Stage;
-use crate::model::inactive_unknowns::InactiveUnknowns;
-use crate::thresholds::Thresholds;
+use crate::{
+    budget::cost_with_derivatives, laboratory::Stage, model::inactive_unknowns::InactiveUnknowns,
+    thresholds::Thresholds,
+};
 use protocol::announce::EffectDescriptor;
 use protocol::case::Unknown;
 use protocol::job::Numerics;
@@ -25,6 +25,9 @@ pub struct Inputs {
     pub library: Vec<EffectDescriptor>,
     /// Coordinates of a calibrated point in the search space, if there is one.
     pub start: Option<Vec<f64>>,
+    /// Coordinates of the best fits of other families that the calibration of the start saw; `None` where the start
+    /// is not the result of a calibration of this case on these records, whose minima are then searched.
+    pub families: Option<Vec<Vec<f64>>>,
     /// Numerical settings of all simulations except those that check the discretisation error.
     pub usual: Numerics,
     /// Finer numerical settings to check the discretisation error: first everything refined, then one
@@ -130,6 +133,7 @@ pub(crate) mod tests {
             records: Vec::new(),
             library: Vec::new(),
             start: None,
+            families: None,
             usual: Numerics::default(),
             finer: Vec::new(),
             global_search: "quick",

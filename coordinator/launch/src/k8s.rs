@@ -6,14 +6,39 @@ use super::{
     worker_options::WorkerOptions,
 };
 use link::keys::{CA, WORKER};
-use serde_json::{Value, json};
-use std::{fmt::Write as _, net::IpAddr, path::Path};
+use serde_json::json;
+use std::{net::IpAddr, path::Path};
 use support::Problem;
 
 /// Name of all Kubernetes objects created.
 const NAME: &str = "horsehead-worker";
 /// Mount path of the keys in a pod.
 const KEYS: &str = "/keys";
+
+/// Deployment of workers, with the values of an example.
+const DEPLOYMENT: &str = include_str!("../../../deploy/k8s/deployment.yaml");
+/// Network policy of workers, with the coordinator of an example.
+const NETWORK_POLICY: &str = include_str!("../../../deploy/k8s/network-policy.yaml");
+/// Part of the Deployment that takes settings from a map, where the program gives arguments.
+const ENVIRONMENT: &str = "          envFrom:
+            - configMapRef:
+                name: horsehead-worker
+";
+/// Parts of the Deployment that only workers with keys need.
+const MOUNTS: &str = "          volumeMounts:
+            - name: keys
+              mountPath: /keys
+              readOnly: true
+";
+const VOLUMES: &str = "      volumes:
+        - name: keys
+          secret:
+            secretName: horsehead-worker
+            defaultMode: 0440
+";
+/// Rule of the network policy for the coordinator.
+const COORDINATOR: &str = "ports:
+        - {protocol: UDP, port: 7447}";
 
 /// Plans the application of the Kubernetes manifests for workers; `options` is `replicas=4`, optionally with
 /// `image`, `namespace`, `cpu` and `memory`; `name` is the worker's key folder, shared by all pods.
@@ -50,26 +75,13 @@ pub fn up(order: &WorkerOptions, options: &str, name: Option<&str>) -> Result<La
         let make = StepInput::Command(secret(&folder.join(name)));
         steps.push(apply("make a secret of the keys", &namespace, make));
     }
-    let has_keys = !steps.is_empty();
-    let objects = [
-        deployment(
-            order,
-            replicas,
-            &of(
-                "image",
-                concat!("horsehead-worker:", env!("CARGO_PKG_VERSION")),
-            ),
-            cpu,
-            &of("memory", "1Gi"),
-            has_keys,
-        ),
-        network_policy(order),
-    ];
-    let mut manifests = String::new();
-    for object in objects {
-        // JSON is YAML, and both kinds of people can read it when it is indented
-        let _written = write!(manifests, "---\n{object:#}\n");
-    }
+    let image = of(
+        "image",
+        concat!("horsehead-worker:", env!("CARGO_PKG_VERSION")),
+    );
+    let resources = (cpu, of("memory", "1Gi"));
+    let deployment = deployment(order, (replicas, &image), resources, !steps.is_empty());
+    let manifests = format!("{deployment}---\n{}", network_policy(order));
     steps.push(apply(
         "apply the manifests",
         &namespace,
@@ -123,75 +135,78 @@ fn secret(folder: &Path) -> Vec<String> {
     make.map(str::to_owned).into_iter().chain(files).collect()
 }
 
+/// Fills the Deployment of `deploy/k8s`, whose values stand for those of an example.
 fn deployment(
     order: &WorkerOptions,
-    replicas: u16,
-    image: &str,
-    cpu: u16,
-    memory: &str,
+    (replicas, image): (u16, &str),
+    (cpu, memory): (u16, String),
     has_keys: bool,
-) -> Value {
-    let slots = order.slots.unwrap_or(cpu);
+) -> String {
     let mut arguments = WorkerOptions {
-        slots: Some(slots),
+        slots: Some(order.slots.unwrap_or(cpu)),
         ..order.clone()
     }
     .arguments();
     if has_keys {
         arguments.extend(["--tls".to_owned(), KEYS.to_owned()]);
     }
-    let resources = json!({ "cpu": cpu.to_string(), "memory": memory });
-    let mut worker = json!({
-        "name": "worker", "image": image, "args": arguments,
-        "resources": { "requests": resources, "limits": resources },
-        "securityContext": {
-            "allowPrivilegeEscalation": false, "readOnlyRootFilesystem": true,
-            "capabilities": { "drop": ["ALL"] },
-        },
-    });
-    let mut pod = json!({
-        "automountServiceAccountToken": false, "terminationGracePeriodSeconds": 30,
-        "securityContext": {
-            "runAsNonRoot": true, "runAsUser": 65532, "runAsGroup": 65532, "fsGroup": 65532,
-            "seccompProfile": { "type": "RuntimeDefault" },
-        },
-    });
+    let text = DEPLOYMENT
+        .replace("replicas: 4", &format!("replicas: {replicas}"))
+        .replace(
+            "image: horsehead-worker",
+            &format!("image: {}", json!(image)),
+        )
+        .replace(
+            "args: [--tls=/keys]",
+            &format!("args: {}", json!(arguments)),
+        )
+        .replace(ENVIRONMENT, "")
+        .replace(
+            "{cpu: \"1\", memory: 1Gi}",
+            &json!({ "cpu": cpu.to_string(), "memory": memory }).to_string(),
+        );
     if has_keys {
-        worker["volumeMounts"] = json!([{ "name": "keys", "mountPath": KEYS, "readOnly": true }]);
-        pod["volumes"] =
-            json!([{ "name": "keys", "secret": { "secretName": NAME, "defaultMode": 0o440 } }]);
+        return text;
     }
-    pod["containers"] = json!([worker]);
-    json!({
-        "apiVersion": "apps/v1", "kind": "Deployment", "metadata": { "name": NAME },
-        "spec": {
-            "replicas": replicas,
-            "selector": { "matchLabels": { "app": NAME } },
-            "template": { "metadata": { "labels": { "app": NAME } }, "spec": pod },
-        },
-    })
+    text.replace(MOUNTS, "").replace(VOLUMES, "")
 }
 
-/// Builds the network policy: no incoming connections; outgoing ones only to DNS and the coordinator.
-fn network_policy(order: &WorkerOptions) -> Value {
+/// Fills the network policy of `deploy/k8s`: no incoming connections; outgoing ones only to DNS and the coordinator.
+fn network_policy(order: &WorkerOptions) -> String {
     let protocol = match order.connect.protocol {
         link::locator::Protocol::Unix | link::locator::Protocol::Tcp => "TCP",
         link::locator::Protocol::Quic => "UDP",
     };
-    let mut coordinator =
-        json!({ "ports": [{ "protocol": protocol, "port": order.connect.port }] });
-    if let Ok(address) = order.connect.bare_host().parse::<IpAddr>() {
+    let port = order.connect.port;
+    let ports = format!("ports:\n        - {{protocol: {protocol}, port: {port}}}");
+    let to = order.connect.bare_host().parse::<IpAddr>().map(|address| {
         let bits = if address.is_ipv4() { 32 } else { 128 };
-        coordinator["to"] = json!([{ "ipBlock": { "cidr": format!("{address}/{bits}") } }]);
+        let block = json!([{ "ipBlock": { "cidr": format!("{address}/{bits}") } }]);
+        format!("to: {block}\n      ")
+    });
+    let to = to.unwrap_or_default();
+    NETWORK_POLICY.replace(COORDINATOR, &format!("{to}{ports}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Checks that everything that is replaced in the manifests stands in them.
+    #[test]
+    fn the_manifests_have_what_is_filled_in() {
+        let parts = [
+            "replicas: 4",
+            "image: horsehead-worker",
+            "args: [--tls=/keys]",
+            "{cpu: \"1\", memory: 1Gi}",
+            ENVIRONMENT,
+            MOUNTS,
+            VOLUMES,
+        ];
+        for part in parts {
+            assert!(DEPLOYMENT.contains(part), "{part}");
+        }
+        assert!(NETWORK_POLICY.contains(COORDINATOR));
     }
-    let names = json!({ "ports": [
-        { "protocol": "UDP", "port": 53 }, { "protocol": "TCP", "port": 53 },
-    ] });
-    json!({
-        "apiVersion": "networking.k8s.io/v1", "kind": "NetworkPolicy", "metadata": { "name": NAME },
-        "spec": {
-            "podSelector": { "matchLabels": { "app": NAME } },
-            "policyTypes": ["Ingress", "Egress"], "ingress": [], "egress": [coordinator, names],
-        },
-    })
 }

@@ -7,6 +7,14 @@ use super::{
 };
 use support::Problem;
 
+/// Batch script of workers, whose settings come from the environment.
+const SCRIPT: &str = include_str!("../../../deploy/slurm/workers.sbatch");
+/// Line of the script after which settings are inserted; the users' shell lines go before it, since they may not
+/// survive it.
+const STRICT: &str = "set -euo pipefail\n";
+/// Line of the script that starts the workers.
+const WORKER: &str = "exec srun --export=ALL horsehead-worker --slots \"${SLURM_CPUS_ON_NODE:-1}\" --idle-timeout 600\n";
+
 /// Plans the submission of a batch job; `--slurm` accepts every long option of `sbatch`.
 ///
 /// `options` is `nodes=4,time=02:00:00`; `arguments` are passed to `sbatch` unchanged. The program and the
@@ -60,36 +68,42 @@ pub fn up(
     })
 }
 
-/// Returns the batch script: requeued if a node fails, with a signal to the workers half a minute before the
-/// time limit.
+/// Fills the batch script of `deploy/slurm`: its settings, and the program and options of the workers.
 fn script(order: &WorkerOptions, program: &Program, name: Option<&str>) -> String {
-    let path = program.path.display().to_string();
-    let mut worker = vec!["srun".to_owned(), path.clone()];
-    worker.extend(order.arguments());
-    let (mut keys, mut see) = (String::new(), format!("test -x {}", line(&[path])));
-    if let (Some(folder), Some(name)) = (&order.tls, name) {
+    let path = line(&[program.path.display().to_string()]);
+    let connect = line(&[order.connect.to_string()]);
+    let keys = order.tls.as_ref().zip(name).map(|(folder, name)| {
         let folder = std::path::absolute(folder).unwrap_or_else(|_| folder.clone());
         let folder = line(&[folder.join(name).display().to_string()]);
-        see = format!("{see}\ntest -r {folder}/worker.key");
-        keys = format!(" --tls {folder}");
+        format!("export HORSEHEAD_TLS={folder}\n")
+    });
+    let begin = [
+        &lines(&order.prologue),
+        STRICT,
+        &format!("export HORSEHEAD_CONNECT={connect}\n"),
+        &keys.unwrap_or_default(),
+    ]
+    .concat();
+    let slots = order.slots.map_or_else(
+        || "\"${SLURM_CPUS_ON_NODE:-1}\"".to_owned(),
+        |slots| slots.to_string(),
+    );
+    let idle = order
+        .idle_timeout
+        .map_or_else(String::new, |idle| format!(" --idle-timeout {idle}"));
+    let worker = format!(
+        "# it must lie where this node sees it\ntest -x {path}\nexec srun --export=ALL {path} --slots {slots}{idle}\n"
+    );
+    SCRIPT.replace(STRICT, &begin).replace(WORKER, &worker)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Checks that everything that is replaced in the script stands in it.
+    #[test]
+    fn the_script_has_what_is_filled_in() {
+        assert!(SCRIPT.contains(STRICT) && SCRIPT.ends_with(WORKER));
     }
-    let slots = if order.slots.is_some() {
-        ""
-    } else {
-        " --slots \"${SLURM_CPUS_ON_NODE:-1}\""
-    };
-    format!(
-        "#!/bin/bash -l\n\
-         #SBATCH --job-name=horsehead-workers\n\
-         #SBATCH --ntasks-per-node=1\n\
-         #SBATCH --exclusive\n\
-         #SBATCH --requeue\n\
-         #SBATCH --signal=TERM@30\n\
-         {}set -eu\n\
-         # both must lie where this node sees them\n\
-         {see}\n\
-         exec {}{slots}{keys}\n",
-        lines(&order.prologue),
-        line(&worker),
-    )
 }

@@ -1,53 +1,25 @@
 //! Report of models that are external commands: the general report, with PEST's residual file of the
 //! calibration for programs that read it.
 use crate::{
-    Figure, GenericReport, ModelReport, ReportError, Section, SimulationView, SingleRun, Table,
-    folder::stream,
+    data::SimulationView,
+    folder::{ReportError, stream},
+    model_report::{ModelReport, curves_file},
 };
+use case::kind::CommandModel;
 use exchange::pest::{self, ReiRow};
-use protocol::{
-    case::{Case, Unknown},
-    external::{ChannelSource, External},
-};
+use protocol::external::{ChannelSource, External};
 use std::{
     io::Write as _,
     path::{Path, PathBuf},
 };
 
-/// Report content of external-command models: the general content, with PEST's residual files added.
-pub(crate) struct ExternalModelReport;
-
-impl ModelReport for ExternalModelReport {
-    fn channels(&self, of: &SimulationView<'_>) -> Vec<Figure> {
-        GenericReport.channels(of)
-    }
-
-    fn figures(&self, of: &SimulationView<'_>) -> Vec<Figure> {
-        GenericReport.figures(of)
-    }
-
-    fn sections(&self, whose: &str, of: Option<&SimulationView<'_>>) -> Vec<Section> {
-        GenericReport.sections(whose, of)
-    }
-
-    fn zero(&self) -> &'static str {
-        GenericReport.zero()
-    }
-
-    fn group(&self, unknown: &Unknown) -> &'static str {
-        GenericReport.group(unknown)
-    }
-
-    fn tables(&self, run: &SingleRun) -> Vec<Table> {
-        GenericReport.tables(run)
-    }
-
+impl ModelReport for CommandModel {
     fn files(
         &self,
         folder: &Path,
         runs: &[(&str, SimulationView<'_>)],
     ) -> Result<Vec<PathBuf>, ReportError> {
-        let mut written = GenericReport.files(folder, runs)?;
+        let mut written = vec![curves_file(folder, runs)?];
         let objective =
             |shown: &SimulationView<'_>| shown.condition == shown.case.objective.condition;
         let best = runs.iter().rev().find(|(_, shown)| objective(shown));
@@ -58,10 +30,6 @@ impl ModelReport for ExternalModelReport {
             })?);
         }
         Ok(written)
-    }
-
-    fn frequency_hz(&self, case: &Case, condition: usize) -> Option<f64> {
-        GenericReport.frequency_hz(case, condition)
     }
 }
 

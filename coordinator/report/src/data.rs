@@ -42,14 +42,14 @@ pub struct HistoryPoint {
 /// Result of simulating one parameter set under one condition: agreement with the measured record, and
 /// curves.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Run {
+pub struct ScoredCurves {
     /// Agreement with the measured record; without channels if there is no record or no complete simulation.
     pub evaluation: Evaluation,
     /// Simulated curves of the channels; they end at a failure of the simulation.
     pub curves: Curves,
 }
 
-impl Run {
+impl ScoredCurves {
     /// Returns a view of this simulation's curves together with its case and the index of its condition.
     pub const fn shown<'a>(&'a self, case: &'a Case, condition: usize) -> SimulationView<'a> {
         SimulationView {
@@ -101,9 +101,9 @@ pub struct ConditionResult {
     /// Index of the condition in the case.
     pub condition: usize,
     /// Result of simulating the recommended parameters.
-    pub recommended: Run,
+    pub recommended: ScoredCurves,
     /// Result of simulating the optimised parameters.
-    pub optimised: Run,
+    pub optimised: ScoredCurves,
 }
 
 /// Provenance of a result, sufficient to reproduce it.
@@ -203,7 +203,10 @@ impl Calibration {
 
     /// Returns the verdict on a parameter set's simulations under the calibrated conditions, and the
     /// objective summed over these conditions with their weights; `None` if one of them has no result.
-    pub fn objective(&self, of: impl Fn(&ConditionResult) -> &Run) -> Option<(Verdict, f64)> {
+    pub fn objective(
+        &self,
+        of: impl Fn(&ConditionResult) -> &ScoredCurves,
+    ) -> Option<(Verdict, f64)> {
         let mut whole = (Verdict::Complete, 0.0);
         for WeightedCondition { condition, weight } in self.case.objective.weighted_conditions() {
             let mut results = self.conditions.iter();

@@ -1,33 +1,24 @@
-//! Registry of the kinds of model with specific report content: one line each.
-use crate::{
-    chart::ChartAxis, command_files::ExternalModelReport, drawing::ModelReport,
-    general::GenericReport, pumping_unit::PumpingUnitReport,
-};
-use protocol::{
-    case::{Abscissa, Case},
-    external,
-    pumping_unit::Machine,
-};
+//! Report content of each kind of model.
+use crate::model_report::ModelReport;
+use case::kind::{CommandModel, KnownKind, OtherModel, PumpingUnitModel};
+use protocol::case::Case;
 
-const ALL: &[(&str, &dyn ModelReport)] = &[
-    (Machine::KIND, &PumpingUnitReport),
-    (external::KIND, &ExternalModelReport),
-];
-
-/// Returns the report content of a case's kind of model; the general content if the kind has none.
+/// Returns the report content of a case's kind of model.
 pub fn of(case: &Case) -> &'static dyn ModelReport {
-    let name = case::kind::family(&case.model.kind);
-    let mut all = ALL.iter();
-    all.find(|(kind, _)| *kind == name)
-        .map_or(&GenericReport, |(_, drawing)| *drawing)
+    content(KnownKind::of(case))
+}
+
+const fn content(kind: KnownKind) -> &'static dyn ModelReport {
+    match kind {
+        KnownKind::PumpingUnit => &PumpingUnitModel,
+        KnownKind::Command => &CommandModel,
+        KnownKind::Other => &OtherModel,
+    }
 }
 
 /// Returns the scripts of all kinds of model.
 pub(super) fn scripts() -> impl Iterator<Item = &'static str> {
-    ALL.iter().map(|(_, drawing)| drawing.script())
-}
-
-/// Returns the horizontal axis of figures over an abscissa of a case.
-pub(super) fn axis(case: &Case, abscissa: &Abscissa) -> ChartAxis {
-    ChartAxis::of(abscissa, of(case).zero())
+    KnownKind::ALL
+        .into_iter()
+        .map(|kind| content(kind).script())
 }

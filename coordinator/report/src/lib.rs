@@ -5,9 +5,8 @@
 //! or the network.
 //!
 //! Layers from bottom to top: `number`, `color` and `words` format single values; `document` is the document
-//! model and its output formats; `table` and `chart` hold what several topics share; `drawing` is the trait
-//! for content specific to a kind of model, implemented in the modules registered in `kind`, else by
-//! `general`; `section` has a file for each topic, with its tables and figures; `folder` and `write` write
+//! model and its output formats; `table` and `chart` hold what several topics share; `model_report` is the trait
+//! for content specific to a kind of model, which `kind` selects; `section` has a file for each topic, with its tables and figures; `folder` and `write` write
 //! the files.
 pub mod chart;
 pub mod color;
@@ -16,13 +15,12 @@ mod csv;
 pub mod data;
 pub mod diagnosis;
 pub mod document;
-pub mod drawing;
 mod failure;
 pub mod folder;
-mod general;
 pub mod identification;
 pub mod kind;
 mod machine_check;
+pub mod model_report;
 pub mod number;
 pub mod orthogonal;
 pub mod pumping_unit;
@@ -34,14 +32,13 @@ pub mod words;
 mod write;
 
 pub use data::{
-    Calibration, ConditionResult, HistoryPoint, Individual, Origin, RivalFit, Run, SimulationView,
-    SingleRun, is_determined,
+    Calibration, ConditionResult, HistoryPoint, Individual, Origin, RivalFit, ScoredCurves,
+    SimulationView, SingleRun, is_determined,
 };
 pub use document::{Block, Figure, Report, Section, Table, page, text};
-pub use drawing::ModelReport;
 pub use folder::{ReportError, write_report};
-pub use general::GenericReport;
 pub use machine_check::{ComparedChannel, MachineCheck};
+pub use model_report::ModelReport;
 pub use section::{checks, condition_checks, derivatives, flags, genes, hosts, jobs, slot_time};
 pub use write::{
     agreement, calibration, individual, machine, parameters, ranges, rivals, running_calibration,

@@ -126,6 +126,10 @@ pub struct IdentificationStudy {
 pub struct StageCost {
     /// Number of the stage's completed experiments (simulations).
     pub experiments: u64,
+    /// Number of these simulations that also computed derivatives.
+    pub with_derivatives: u64,
+    /// Number of experiments that were answered by the simulation of an equal one.
+    pub known: u64,
     /// Number of the stage's experiments whose simulation failed or ended early.
     pub failed: u64,
     /// Number of batches of experiments that the stage ran one after another; experiments of one batch are

@@ -5,12 +5,13 @@
 use super::{
     batch::run_batch,
     entry::{Entry, StageCost},
-    error::StudyError,
+    error::{EvaluatorError, StudyError},
     evaluator::{Evaluator, answer},
+    known::{Key, KnownObservations, key, part, places},
     stop::Stop,
     watch::Watch,
 };
-use discrepancy::baseline::budget::cost;
+use discrepancy::budget::cost as price;
 use discrepancy::diagnose::Inputs;
 use discrepancy::laboratory::{Finding, Laboratory, Stage};
 use journal::event::JobReason;
@@ -18,7 +19,7 @@ use journal::job_range::LIBRARY;
 use protocol::{
     announce::EffectDescriptor,
     id::JobId,
-    job::{Answer, Job, Observation, SimulateSpec, Verdict},
+    job::{Answer, Column, Job, Observation, SimulateSpec, Verdict},
 };
 use std::collections::BTreeMap;
 
@@ -79,6 +80,7 @@ pub(super) struct Jobs<'a, E> {
     differentiates: bool,
     stages: &'static [Stage],
     costs: BTreeMap<Stage, StageCost>,
+    known: KnownObservations,
     /// Cost of the completed experiments, in units of one plain simulation.
     spent: f64,
     /// Remaining budget of each stage, in units of one plain simulation.
@@ -102,6 +104,7 @@ impl<'a, E: Evaluator> Jobs<'a, E> {
             differentiates: !inputs.differences,
             stages,
             costs: BTreeMap::new(),
+            known: KnownObservations::default(),
             spent: 0.0,
             left: inputs.budget(),
         }
@@ -120,6 +123,11 @@ impl<E: Evaluator> Laboratory for Jobs<'_, E> {
         self.differentiates
     }
 
+    fn is_known(&self, spec: &SimulateSpec) -> bool {
+        let key = key(spec).ok();
+        key.is_some_and(|key| self.known.answer(&key, &spec.columns).is_some())
+    }
+
     fn found(&mut self, finding: &Finding) -> Result<(), StudyError> {
         Ok(self.evaluator.enter(&Entry::Interim(finding.clone()))?)
     }
@@ -129,12 +137,13 @@ impl<E: Evaluator> Laboratory for Jobs<'_, E> {
         stage: Stage,
         batch: Vec<SimulateSpec>,
     ) -> Result<Vec<Option<Observation>>, StudyError> {
-        let mut results: Vec<Option<Observation>> = vec![None; batch.len()];
-        let mut open = batch.len();
-        let prices: Vec<f64> = batch.iter().map(|spec| cost(spec.columns.len())).collect();
-        let numbers = (self.next_id..).map(JobId);
-        let jobs = numbers.zip(batch.into_iter().map(Job::Simulate)).collect();
-        self.next_id += results.len() as u64;
+        let Planned {
+            mut results,
+            asked,
+            shared,
+            jobs,
+        } = self.plan(stage, batch)?;
+        let mut open = jobs.len();
         let reason = JobReason::outside_search(stage.name());
         let Self {
             evaluator,
@@ -151,21 +160,23 @@ impl<E: Evaluator> Laboratory for Jobs<'_, E> {
             jobs,
             &reason,
             stop,
-            |evaluator, place, completed| {
-                let price = prices.get(place).copied().unwrap_or_default();
+            |evaluator, index, completed| {
+                let Some(own) = asked.get(index) else {
+                    return Ok(());
+                };
+                let price = price(own.columns.len());
                 *spent += price;
                 left[stage as usize] -= price;
                 let cost = costs.entry(stage).or_default();
                 cost.experiments += 1;
+                cost.with_derivatives += u64::from(!own.columns.is_empty());
                 let id = completed.id;
                 match completed.outcome.done() {
                     Ok(answer) => {
                         let seen = answer.into_channels();
                         let seen = seen.map_err(|_| StudyError::WrongKind { id })?;
                         cost.failed += u64::from(seen.verdict != Verdict::Complete);
-                        if let Some(slot) = results.get_mut(place) {
-                            *slot = Some(seen);
-                        }
+                        results[own.place] = Some(seen);
                     }
                     // a failure that every experiment would meet ends the diagnosis
                     Err(failure) => match StudyError::from_systematic_failure(&failure) {
@@ -188,7 +199,82 @@ impl<E: Evaluator> Laboratory for Jobs<'_, E> {
         )
         .await?;
         let cost = self.costs.entry(stage).or_default();
-        cost.batches += u64::from(!results.is_empty());
+        cost.batches += u64::from(!asked.is_empty());
+        for (place, index, columns) in shared {
+            let seen = asked.get(index).and_then(|own| results[own.place].as_ref());
+            results[place] = seen.and_then(|seen| part(seen, &columns));
+        }
+        for Asked {
+            place,
+            key,
+            columns,
+        } in asked
+        {
+            if let Some(seen) = &results[place] {
+                self.known.insert(key, columns, seen.clone());
+            }
+        }
         Ok(results)
     }
+}
+
+impl<E> Jobs<'_, E> {
+    /// Answers what is known of a batch, and numbers the jobs of the rest.
+    fn plan(&mut self, stage: Stage, batch: Vec<SimulateSpec>) -> Result<Planned, StudyError> {
+        let mut planned = Planned {
+            results: vec![None; batch.len()],
+            asked: Vec::new(),
+            shared: Vec::new(),
+            jobs: Vec::new(),
+        };
+        let cost = self.costs.entry(stage).or_default();
+        for (place, spec) in batch.into_iter().enumerate() {
+            let key = key(&spec).map_err(|error| EvaluatorError {
+                message: error.to_string(),
+                help: None,
+                can_go_on: false,
+            })?;
+            if let Some(answer) = self.known.answer(&key, &spec.columns) {
+                planned.results[place] = Some(answer);
+                cost.known += 1;
+                continue;
+            }
+            let same = planned.asked.iter().enumerate().find_map(|(index, own)| {
+                let columns = places(&spec.columns, &own.columns)?;
+                (own.key == key).then_some((place, index, columns))
+            });
+            if let Some(same) = same {
+                planned.shared.push(same);
+                cost.known += 1;
+                continue;
+            }
+            planned.asked.push(Asked {
+                place,
+                key,
+                columns: spec.columns.clone(),
+            });
+            let id = JobId(self.next_id);
+            planned.jobs.push((id, Job::Simulate(spec)));
+            self.next_id += 1;
+        }
+        Ok(planned)
+    }
+}
+
+/// Batch of experiments as far as it is known, and the jobs of the rest.
+struct Planned {
+    /// Observations of the batch; `None` where they are not known.
+    results: Vec<Option<Observation>>,
+    /// Experiments that are simulated, in the order of their jobs.
+    asked: Vec<Asked>,
+    /// Places of experiments that one of `asked` answers, with its index and the places of the derivatives there.
+    shared: Vec<(usize, usize, Vec<usize>)>,
+    jobs: Vec<(JobId, Job)>,
+}
+
+/// Experiment of a batch that is simulated: place of its result, experiment, and derivatives.
+struct Asked {
+    place: usize,
+    key: Key,
+    columns: Vec<Column>,
 }

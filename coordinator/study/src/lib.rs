@@ -20,6 +20,7 @@ mod evaluator;
 mod experiments;
 mod identify;
 mod job_number;
+mod known;
 mod log;
 mod mismatch;
 pub mod orthogonal;

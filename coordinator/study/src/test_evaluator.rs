@@ -10,7 +10,7 @@ use protocol::{
         Verdict,
     },
     message::Cost,
-    pumping_unit::{Energy, Simulation},
+    pumping_unit::{Energy, HeadLoads, Simulation},
 };
 use search::{
     random::{Phase, Stream, Streams},
@@ -132,6 +132,7 @@ pub(crate) fn curves(first_gene: f64) -> Simulation {
         suspension_acceleration_m_s2: vec![0.0; 2],
         crank_torque_n_m: vec![0.0; 2],
         modal: Vec::new(),
+        head_loads: HeadLoads::default(),
         energy: Energy::default(),
         motion: Vec::new(),
     }

@@ -3,9 +3,9 @@ use dispatch::scheduler::Snapshot;
 
 /// Observer of a study that reports its progress as `V`.
 pub trait Watch<V> {
-    /// Receives the study's progress whenever a result has arrived or the plan has changed; `crew` returns
+    /// Receives the study's progress whenever a result has arrived or the plan has changed; `snapshot` returns
     /// the status of the workers.
-    fn progress(&mut self, view: &V, crew: &dyn Fn() -> Snapshot);
+    fn progress(&mut self, view: &V, snapshot: &dyn Fn() -> Snapshot);
 
     /// Receives the number of results from an earlier session, before any other call.
     fn resumed(&mut self, _recorded: usize) {}

@@ -5,6 +5,7 @@
     reason = "helpers of tests: a command that cannot be run or read has failed"
 )]
 mod head_from_mesh;
+mod life;
 
 use serde_json::Value;
 use std::{fs, path::Path, process::Command};
@@ -86,27 +87,5 @@ fn head_picks_the_modes_that_couple() {
     for mode in object["left_out"].as_array().unwrap() {
         let symmetric = mode["family"] == "symmetric";
         assert_eq!(number(&mode["coupling"]) > 0.0, symmetric, "{mode}");
-    }
-}
-
-/// Checks that `bench dispatch` holds connections that send nothing, reopens those closed by the coordinator,
-/// and measures the job rate beside them.
-#[test]
-fn bench_dispatch_measures_beside_silent_connections() {
-    let object = json(&[
-        "bench", "dispatch", "--jobs", "200", "--silent", "300", "--turns", "1",
-    ]);
-    let silent = &object["silent"];
-    assert_eq!(silent["connections"], 300);
-    assert!(number(&silent["held"]) > 0.0, "{silent}");
-    // a block lasts twice as long as silence is borne with
-    assert!(number(&silent["reopened"]) >= 300.0, "{silent}");
-    for rate in [
-        "jobs_per_s_without",
-        "jobs_per_s_beside",
-        "rate_ratio",
-        "cpu_ratio",
-    ] {
-        assert!(number(&silent[rate]) > 0.0, "{silent}");
     }
 }

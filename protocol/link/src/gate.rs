@@ -102,12 +102,12 @@ impl Gate {
             Arc::clone(&inner),
             say,
         ));
-        let house = AdmissionContext {
+        let context = AdmissionContext {
             listed,
             inner,
             refusals: Refusals::default(),
         };
-        let task = tokio::spawn(admit(endpoint.clone(), Arc::new(house)));
+        let task = tokio::spawn(admit(endpoint.clone(), Arc::new(context)));
         Ok(Self {
             endpoint,
             task,
@@ -171,7 +171,7 @@ fn streams() -> TransportConfig {
 }
 
 /// Accepts incoming connections and handles each in a task of its own.
-async fn admit(endpoint: Endpoint, house: Arc<AdmissionContext>) {
+async fn admit(endpoint: Endpoint, context: Arc<AdmissionContext>) {
     let pending = Arc::new(Semaphore::new(PENDING));
     while let Some(incoming) = endpoint.accept().await {
         let waiting = PENDING - pending.available_permits();
@@ -188,14 +188,14 @@ async fn admit(endpoint: Endpoint, house: Arc<AdmissionContext>) {
             incoming.refuse();
             continue;
         };
-        let house = Arc::clone(&house);
+        let context = Arc::clone(&context);
         drop(tokio::spawn(async move {
             let from = incoming.remote_address();
             let shaken = timeout(HANDSHAKE, shake(incoming)).await;
             drop(permit);
             match shaken {
-                Ok(Ok(connection)) => enter(&house, connection, from).await,
-                Ok(Err(error)) => house.refusals.tell(from, &error.to_string()),
+                Ok(Ok(connection)) => enter(&context, connection, from).await,
+                Ok(Err(error)) => context.refusals.warn(from, &error.to_string()),
                 Err(_) => tracing::debug!(%from, "a peer did not finish its handshake"),
             }
         }));
@@ -208,10 +208,10 @@ async fn shake(incoming: Incoming) -> Result<Connection, ConnectionError> {
 
 /// Admits a peer whose certificate is valid, whose name is on the list of workers and has a free connection;
 /// then forwards its streams until the connection ends.
-async fn enter(house: &AdmissionContext, connection: Connection, from: SocketAddr) {
+async fn enter(context: &AdmissionContext, connection: Connection, from: SocketAddr) {
     let owner = owner(&connection).unwrap_or_default();
-    let Some(places) = allow_list::places(house.listed.clone(), &owner).await else {
-        house.refusals.unlisted(from, &owner);
+    let Some(places) = allow_list::places(context.listed.clone(), &owner).await else {
+        context.refusals.unlisted(from, &owner);
         connection.close(VarInt::from_u32(UNLISTED), b"not on the list of workers");
         return;
     };
@@ -220,17 +220,17 @@ async fn enter(house: &AdmissionContext, connection: Connection, from: SocketAdd
         return;
     }
     let Ok(_place) = places.try_acquire() else {
-        house.refusals.crowded(from, &owner);
+        context.refusals.crowded(from, &owner);
         connection.close(
             VarInt::from_u32(CLOSE_TOO_MANY_CONNECTIONS),
             b"too many connections",
         );
         return;
     };
-    match house.inner.connect(&owner, streams()).await {
+    match context.inner.connect(&owner, streams()).await {
         Ok(inner) => tokio::select! {
             () = forward_streams(&connection, &inner) => {}
-            () = allow_list::removed(house.listed.clone(), &owner) => {
+            () = allow_list::removed(context.listed.clone(), &owner) => {
                 tracing::warn!(%from, "\"{owner}\" was taken off the list of workers: it is out");
                 connection.close(VarInt::from_u32(UNLISTED), b"taken off the list of workers");
             }

@@ -1,5 +1,5 @@
 //! Curves and snapshots of a simulated pumping unit, for plots and animations.
-use super::Sensor;
+use super::{HeadLoads, Sensor};
 use crate::{
     job::{Counters, Curves, Verdict},
     wire::{self, WireError},
@@ -40,6 +40,8 @@ pub struct Simulation {
     pub crank_torque_n_m: Vec<f64>,
     /// Modal coordinates of the back head, mode by mode [kg^1/2 m].
     pub modal: Vec<Vec<f64>>,
+    /// Loads of the back head, from which its stress anywhere follows.
+    pub head_loads: HeadLoads,
     /// Energy balance of the recorded revolution.
     pub energy: Energy,
     /// Snapshots of the moving machine; empty unless requested.

@@ -9,6 +9,9 @@ use crate::{
 };
 use serde::{Deserialize, Serialize};
 
+/// Number of intervals of the rope's arc over which its normal force on the back head is recorded.
+const LOAD_INTERVALS: u32 = 24;
+
 /// Pumping unit and its working conditions.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Machine {
@@ -81,6 +84,21 @@ impl Machine {
             Self::KIND.to_owned(),
             wire::encode(self)?,
         ))
+    }
+
+    /// Returns the ends of the intervals of the rope's arc over which its normal force on the back head is recorded:
+    /// equally spaced from the rope's fixed end to the end of the arc of the head's tables \[deg\]; empty for a head
+    /// without tables.
+    pub fn load_breaks_deg(&self) -> Vec<f64> {
+        let (from, to) = (
+            self.back_head.rope_anchor_deg,
+            self.modal_head.arc_deg.last(),
+        );
+        let Some(&to) = to.filter(|to| **to > from) else {
+            return Vec::new();
+        };
+        let at = |k: u32| from + (to - from) * f64::from(k) / f64::from(LOAD_INTERVALS);
+        (0..=LOAD_INTERVALS).map(at).collect()
     }
 }
 

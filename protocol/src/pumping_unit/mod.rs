@@ -10,6 +10,7 @@ mod drawing;
 mod effect_unit;
 pub mod failure;
 mod head;
+mod head_loads;
 mod machine;
 mod parts;
 mod reduce_head;
@@ -23,6 +24,7 @@ pub use discretisation::Discretisation;
 pub use drawing::{Energy, MachineSnapshot, Simulation};
 pub use effect_unit::EFFECT_UNITS;
 pub use head::{Influence, ModalHead, StressRecovery};
+pub use head_loads::{HeadLoads, HeadSurface};
 pub use machine::{Machine, PumpingUnit, WorkingCondition};
 pub use parts::{
     BackHead, Beam, Contact, Crank, FrontHead, Rod, RopeEnds, Ropes, Suspension, TurnSense,

@@ -4,7 +4,7 @@
 //! [`ReduceHeadSpec`] as request and a [`ReducedHead`] as answer. It does not depend on the case: mesh,
 //! material, gauges and arc travel with the job (about 1 MB for 14,000 bricks, 60 bytes per 10-node
 //! tetrahedron).
-use super::{Influence, TwinHead};
+use super::{HeadSurface, Influence, TwinHead};
 use serde::{Deserialize, Serialize};
 
 /// Name of the job with the request [`ReduceHeadSpec`] and the answer [`ReducedHead`].
@@ -42,6 +42,9 @@ pub struct ReduceHeadSpec {
     pub pair: Option<RopePair>,
     /// Static load under which the stress of the gauges and its gradient are returned.
     pub wrap: RopeWrap,
+    /// Ends of the intervals of the rope's arc, ascending from its fixed end \[deg\], if the stress on the surface under
+    /// unit loads is to be returned.
+    pub surface_deg: Option<Vec<f64>>,
     /// Whether the displacement fields of all modes are returned, and displacement and stress under the
     /// static load.
     pub fields: bool,
@@ -168,6 +171,8 @@ pub struct ReducedHead {
     pub lanczos_steps: usize,
     /// Wall time of the reduction on the worker \[s\].
     pub wall_s: f64,
+    /// Stress on the surface under unit loads; `None` unless requested.
+    pub surface: Option<HeadSurface>,
     /// Displacement and stress fields over the whole mesh; `None` unless requested.
     pub fields: Option<HeadFields>,
 }

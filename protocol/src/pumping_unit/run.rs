@@ -13,9 +13,6 @@ pub struct RunSettings {
     pub ramp_s: f64,
     /// Time integration method.
     pub integrator: Integrator,
-    /// Spectral radius at infinite frequency for [`Integrator::GeneralizedAlpha`], 0 to 1 \[1\].
-    #[serde(default = "half")]
-    pub spectral_radius: f64,
     /// Largest time step where the beam oscillates slowly on its ropes \[s\]; stiffer ropes get
     /// proportionally shorter steps. It limits how coarsely the ropes' own modes are resolved.
     pub longest_step_s: f64,
@@ -32,10 +29,6 @@ const fn iterations() -> u64 {
     25_000
 }
 
-const fn half() -> f64 {
-    0.5
-}
-
 /// Time integration method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -44,37 +37,17 @@ pub enum Integrator {
     TrBdf2,
     /// ESDIRK: fourth order, five implicit stages per step.
     Esdirk4,
-    /// Rosenbrock method of fourth order: six linear solutions a step, a new factorisation each.
-    Rodas4,
-    /// Generalised-alpha, second order, one implicit stage a step.
-    GeneralizedAlpha,
-    /// Backward differentiation of variable step, orders 1 and 2.
-    Bdf,
-    /// Backward differentiation of variable step, orders 1 to 5, for comparison only: the higher orders are
-    /// unstable on lightly damped modes.
-    Bdf5,
 }
 
 impl Integrator {
     /// All time integration methods.
-    pub const ALL: [Self; 6] = [
-        Self::TrBdf2,
-        Self::Esdirk4,
-        Self::Rodas4,
-        Self::GeneralizedAlpha,
-        Self::Bdf,
-        Self::Bdf5,
-    ];
+    pub const ALL: [Self; 2] = [Self::TrBdf2, Self::Esdirk4];
 
     /// Returns the name of the integration method used in case files.
     pub const fn as_str(self) -> &'static str {
         match self {
             Self::TrBdf2 => "tr_bdf2",
             Self::Esdirk4 => "esdirk4",
-            Self::Rodas4 => "rodas4",
-            Self::GeneralizedAlpha => "generalized_alpha",
-            Self::Bdf => "bdf",
-            Self::Bdf5 => "bdf5",
         }
     }
 }

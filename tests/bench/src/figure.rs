@@ -1,9 +1,7 @@
 //! SVG figure of error against work, one curve per time integration method: Newton iterations on the left,
 //! wall time on the right, both axes logarithmic.
-use crate::work::{Comparison, Point};
+use crate::work::{Comparison, Integrator, Point};
 use maud::{Markup, html};
-use protocol::pumping_unit::Integrator;
-use report::pumping_unit::integrator_name;
 
 const WIDTH: f64 = 960.0;
 const HEIGHT: f64 = 400.0;
@@ -76,7 +74,6 @@ const fn color(integrator: Integrator) -> &'static str {
         Integrator::Rodas4 => "#1b7a5a",
         Integrator::GeneralizedAlpha => "#8a4f8f",
         Integrator::Bdf => "#222222",
-        Integrator::Bdf5 => "#6b6b6b",
     }
 }
 
@@ -151,7 +148,7 @@ fn names(all: &Comparison, y: &Axis) -> Markup {
     }
     html! {
         @for (method, at) in named {
-            text x=(PANELS[1].1 + 8.0) y=(at + 4.0) fill=(color(method)) { (integrator_name(method)) }
+            text x=(PANELS[1].1 + 8.0) y=(at + 4.0) fill=(color(method)) { (method.title()) }
         }
     }
 }

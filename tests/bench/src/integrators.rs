@@ -3,13 +3,10 @@
 use crate::figure::error_against_work;
 use crate::machine::MachineChoice;
 use crate::output::{Output, table};
-use crate::work::{Comparison, Plan, Point, compare};
+use crate::work::{Comparison, Integrator, Plan, Point, compare};
 use case::read_genes;
 use clap::Args;
 use comfy_table::Table;
-use protocol::pumping_unit::Integrator;
-use report::pumping_unit::integrator_name;
-use report::words;
 use std::path::PathBuf;
 
 /// Compare time integration methods: error of the gauge curves against Newton iterations and wall time.
@@ -28,7 +25,7 @@ pub(crate) struct Arguments {
     /// Gene file with the parameters, such as a run's `calibrated.toml`; the recommended values by default.
     #[arg(long, value_name = "FILE")]
     genes: Option<PathBuf>,
-    /// Time integration methods to compare, by their names in case files; all by default.
+    /// Time integration methods to compare, all by default.
     #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = method)]
     methods: Vec<Integrator>,
     /// Number of accuracy levels, from the coarsest; 0 for all.
@@ -68,7 +65,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     };
     let output = &arguments.output;
     let done = |point: &Point| {
-        let [name, limits] = [integrator_name(point.integrator), &limits(point)];
+        let [name, limits] = [point.integrator.title(), &limits(point)];
         let time = point.wall_s;
         output.print_progress(&format!("{name:<18} {limits}: {time:.3} s, {}", end(point)))
     };
@@ -98,7 +95,7 @@ fn limits(point: &Point) -> String {
 fn end(point: &Point) -> String {
     match point.error {
         Some(error) => format!("{:.3} %", 100.0 * error),
-        None => words::verdict(&point.verdict),
+        None => format!("{:?}", point.verdict),
     }
 }
 
@@ -123,7 +120,7 @@ fn side_by_side(all: &Comparison) -> Table {
         let fastest = good.min_by(|a, b| a.wall_s.total_cmp(&b.wall_s));
         let mark = if fastest == Some(point) { " *" } else { "" };
         table.add_row([
-            integrator_name(point.integrator).to_owned() + mark,
+            point.integrator.title().to_owned() + mark,
             limits(point),
             point.steps.to_string(),
             point.rejected_steps.to_string(),

@@ -5,10 +5,14 @@ use clap::Args;
 use protocol::case::Case;
 use protocol::{
     job::{Individual, Job, Reply, SimulateSpec},
-    pumping_unit::{Discretisation, Simulation},
+    pumping_unit::{Discretisation, PumpingUnit, Simulation},
 };
-use std::path::PathBuf;
-use worker::handler::Prepared;
+use simulation::{
+    observe::Recorder,
+    run::{RunResult, RunSettings},
+};
+use std::{path::PathBuf, time::Instant};
+use worker::{handler::Prepared, pumping_unit};
 
 /// Machine to simulate.
 #[derive(Clone, Debug, Args)]
@@ -54,7 +58,37 @@ impl MachineChoice {
     }
 }
 
+/// Run of one individual, with its gauge stress.
+pub(crate) struct GaugeRun {
+    pub(crate) result: RunResult,
+    /// Gauge stress over the revolution \[Pa\].
+    pub(crate) gauges: [Vec<f64>; 4],
+    pub(crate) wall_s: f64,
+}
+
 impl Machine {
+    /// Simulates the machine with the parameter values of one individual and settings of the run that `change` makes of
+    /// those of the case.
+    pub(crate) fn run(
+        &self,
+        genes: &[f64],
+        change: impl FnOnce(RunSettings) -> RunSettings,
+    ) -> anyhow::Result<GaugeRun> {
+        let failed = |failure| anyhow!("the machine cannot be built: {failure:?}");
+        let unit = PumpingUnit::of(self.case.clone())?;
+        let machine = pumping_unit::machine(&unit, self.condition).map_err(failed)?;
+        let law = pumping_unit::rope_law(&unit, genes).map_err(failed)?;
+        let settings = change(pumping_unit::run_settings(&unit.machine));
+        let mut recorder = Recorder::gauges_only();
+        let begun = Instant::now();
+        let result = simulation::run::simulate(&machine, &law, &settings, &mut recorder);
+        Ok(GaugeRun {
+            result,
+            gauges: recorder.curves.gauge,
+            wall_s: begun.elapsed().as_secs_f64(),
+        })
+    }
+
     /// Simulates the machine with the parameter values of one individual.
     pub(crate) fn simulate(
         &self,

@@ -30,7 +30,11 @@ pub(crate) struct Output {
 
 impl Output {
     /// Prints a result as a table or as JSON.
-    pub(crate) fn print(&self, table: &Table, object: &impl Serialize) -> anyhow::Result<()> {
+    pub(crate) fn print(
+        &self,
+        table: &impl ToString,
+        object: &impl Serialize,
+    ) -> anyhow::Result<()> {
         let text = match self.output {
             Form::Table => table.to_string(),
             Form::Json => serde_json::to_string(object)?,

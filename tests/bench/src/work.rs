@@ -4,14 +4,78 @@
 //! their difference is the smallest error that can be resolved. A method is run at a ladder of tolerances and
 //! largest steps. Which of the two limits the accuracy differs between methods, so that only the
 //! Pareto-optimal points of each count. Everything but the wall times is deterministic.
-use crate::machine::Machine;
+use crate::machine::{GaugeRun, Machine};
 use anyhow::ensure;
-use protocol::pumping_unit::Integrator;
-use protocol::{
-    job::Verdict,
-    pumping_unit::{Discretisation, Simulation},
-};
 use serde::Serialize;
+use simulation::{
+    integrator::{
+        method::{Method, SPECTRAL_RADIUS},
+        tableau::{ESDIRK4, TR_BDF2},
+    },
+    run::RunSettings,
+    verdict::Verdict,
+};
+
+/// Time integration method to compare: those of cases, and others that judge them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Integrator {
+    /// TR-BDF2: second order, two implicit stages per step.
+    TrBdf2,
+    /// ESDIRK: fourth order, five implicit stages per step.
+    Esdirk4,
+    /// Rosenbrock method of fourth order: six linear solutions a step, a new factorisation each.
+    Rodas4,
+    /// Generalised-alpha, second order, one implicit stage a step.
+    GeneralizedAlpha,
+    /// Backward differentiation of variable step, orders 1 and 2.
+    Bdf,
+}
+
+impl Integrator {
+    /// All methods.
+    pub(crate) const ALL: [Self; 5] = [
+        Self::TrBdf2,
+        Self::Esdirk4,
+        Self::Rodas4,
+        Self::GeneralizedAlpha,
+        Self::Bdf,
+    ];
+
+    /// Returns the name of the method on the command line.
+    pub(crate) const fn as_str(self) -> &'static str {
+        match self {
+            Self::TrBdf2 => "tr_bdf2",
+            Self::Esdirk4 => "esdirk4",
+            Self::Rodas4 => "rodas4",
+            Self::GeneralizedAlpha => "generalized_alpha",
+            Self::Bdf => "bdf",
+        }
+    }
+
+    /// Returns the name of the method in tables and figures.
+    pub(crate) const fn title(self) -> &'static str {
+        match self {
+            Self::TrBdf2 => "TR-BDF2",
+            Self::Esdirk4 => "ESDIRK4",
+            Self::Rodas4 => "RODAS4",
+            Self::GeneralizedAlpha => "generalised-alpha",
+            Self::Bdf => "BDF, order ≤ 2",
+        }
+    }
+
+    const fn method(self) -> Method {
+        match self {
+            Self::TrBdf2 => Method::RungeKutta(&TR_BDF2),
+            Self::Esdirk4 => Method::RungeKutta(&ESDIRK4),
+            Self::Rodas4 => Method::Rosenbrock,
+            Self::GeneralizedAlpha => Method::GeneralizedAlpha {
+                spectral_radius: SPECTRAL_RADIUS,
+            },
+            Self::Bdf => Method::Bdf { highest: 2 },
+        }
+    }
+}
 
 /// Accuracy levels at which each method is run, from coarse to fine: pairs of tolerance \[1\] and largest
 /// step \[s\].
@@ -52,15 +116,16 @@ struct Integration {
 }
 
 impl Integration {
-    const fn discretisation(&self) -> Discretisation {
-        Discretisation {
-            integrator: Some(self.integrator),
-            longest_step_s: Some(self.longest_step_s),
-            step_as_stated: true,
-            tolerance: Some(self.tolerance),
-            budget: Some(self.budget),
-            ..Discretisation::OF_THE_CASE
-        }
+    /// Simulates a machine with these settings.
+    fn run(&self, machine: &Machine, genes: &[f64]) -> anyhow::Result<GaugeRun> {
+        machine.run(genes, |settings| RunSettings {
+            method: self.integrator.method(),
+            longest_step: self.longest_step_s,
+            slow_swing: f64::INFINITY,
+            tolerance: self.tolerance,
+            budget: self.budget,
+            ..settings
+        })
     }
 }
 
@@ -105,22 +170,29 @@ pub(crate) struct Point {
 }
 
 impl Point {
-    fn new(integration: &Integration, simulation: &Simulation, truth: &Simulation) -> Self {
-        let counters = &simulation.counters;
+    fn new(integration: &Integration, run: &GaugeRun, truth: &GaugeRun) -> Self {
+        let counters = &run.result.statistics;
+        let (work, stored) = (run.result.work, run.result.stored);
+        let missing = work.input - work.output - work.dissipated - stored;
+        let scale = work.input.abs().max(work.output.abs());
         Self {
             integrator: integration.integrator,
             tolerance: integration.tolerance,
             longest_step_s: integration.longest_step_s,
-            verdict: simulation.verdict,
-            complete: simulation.verdict == Verdict::Complete,
+            verdict: run.result.verdict,
+            complete: run.result.verdict == Verdict::Complete,
             steps: counters.steps,
-            rejected_steps: counters.rejected_steps,
+            rejected_steps: counters.error_rejections + counters.newton_rejections,
             newton_iterations: counters.newton_iterations,
             jacobians: counters.jacobians,
             factorizations: counters.factorizations,
-            wall_s: simulation.wall_s,
-            error: worst_gauge(simulation, truth),
-            energy_error: simulation.energy.relative_error,
+            wall_s: run.wall_s,
+            error: worst_gauge(run, truth),
+            energy_error: if scale > 0.0 {
+                missing.abs() / scale
+            } else {
+                0.0
+            },
         }
     }
 }
@@ -167,8 +239,8 @@ pub(crate) fn compare(
     let truth = converged(machine, plan, Integrator::Rodas4)?;
     let second = converged(machine, plan, Integrator::Esdirk4)?;
     let run = |integration: Integration| {
-        let simulation = machine.simulate(&plan.genes, integration.discretisation())?;
-        anyhow::Ok(Point::new(&integration, &simulation, &truth))
+        let own = integration.run(machine, &plan.genes)?;
+        anyhow::Ok(Point::new(&integration, &own, &truth))
     };
     let levels = match plan.levels {
         0 => LADDER.len(),
@@ -198,7 +270,7 @@ pub(crate) fn compare(
 ///
 /// # Errors
 /// A run that is not complete.
-fn converged(machine: &Machine, plan: &Plan, integrator: Integrator) -> anyhow::Result<Simulation> {
+fn converged(machine: &Machine, plan: &Plan, integrator: Integrator) -> anyhow::Result<GaugeRun> {
     let (tolerance, longest_step_s) = REFERENCE;
     let integration = Integration {
         integrator,
@@ -206,23 +278,23 @@ fn converged(machine: &Machine, plan: &Plan, integrator: Integrator) -> anyhow::
         tolerance,
         budget: u64::MAX,
     };
-    let simulation = machine.simulate(&plan.genes, integration.discretisation())?;
+    let run = integration.run(machine, &plan.genes)?;
     ensure!(
-        simulation.verdict == Verdict::Complete,
+        run.result.verdict == Verdict::Complete,
         "the reference run with these parameters is not complete ({:?}): choose other parameters with --genes",
-        simulation.verdict
+        run.result.verdict
     );
-    Ok(simulation)
+    Ok(run)
 }
 
-/// Returns the root mean square difference of a simulation's gauge curves from the reference, divided by the
-/// range, for the worst gauge \[1\]; `None` unless the simulation is complete.
-fn worst_gauge(simulation: &Simulation, truth: &Simulation) -> Option<f64> {
-    if simulation.verdict != Verdict::Complete {
+/// Returns the root mean square difference of a run's gauge curves from the reference, divided by the
+/// range, for the worst gauge \[1\]; `None` unless the run is complete.
+fn worst_gauge(run: &GaugeRun, truth: &GaugeRun) -> Option<f64> {
+    if run.result.verdict != Verdict::Complete {
         return None;
     }
     let mut worst: f64 = 0.0;
-    for (found, exact) in simulation.gauge_mpa.iter().zip(&truth.gauge_mpa) {
+    for (found, exact) in run.gauges.iter().zip(&truth.gauges) {
         if found.len() != exact.len() || exact.is_empty() {
             return None;
         }

@@ -201,6 +201,7 @@ impl<'a> Rig<'a> {
             space,
             records,
             library: self.model.library.clone(),
+            families: None,
             start: Some(point),
             usual: self.numerics.first().cloned().unwrap_or_default(),
             finer: self.numerics.iter().skip(1).cloned().collect(),

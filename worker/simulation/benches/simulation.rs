@@ -162,6 +162,7 @@ fn columns(criterion: &mut Criterion) {
     let sets = [
         ("no column", Vec::new()),
         ("one column", coefficients[..1].to_vec()),
+        ("10 columns", coefficients.to_vec()),
         (
             "12 columns",
             [coefficients.to_vec(), of("pivot_friction")].concat(),

@@ -102,6 +102,9 @@ pub fn description() -> Description {
             turning_stress: [4e5, -2e5, -5e5, 2e5],
             influence_start: 118_f64.to_radians(),
             influence_step: 4_f64.to_radians(),
+            load_breaks: (0..=8)
+                .map(|k| f64::from(125 + 10 * k).to_radians())
+                .collect(),
             normal_influence: vec![wave(4, 100.0); 4],
             tangential_influence: vec![wave(5, 200.0); 4],
         },

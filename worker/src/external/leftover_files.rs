@@ -23,7 +23,7 @@ const TAIL_BYTES: u64 = 16 << 10;
 const MOST_FILES: usize = 1000;
 
 /// File or other directory item found in the folder of a failed run.
-struct Found {
+struct Leftover {
     path: String,
     bytes: u64,
     is_file: bool,
@@ -79,7 +79,7 @@ pub(super) fn collect(root: &Path, own: &[File]) -> FailureFiles {
 }
 
 /// Lists everything below a folder except the folders themselves; links are not followed.
-fn list(root: &Path, below: &str, found: &mut Vec<Found>) -> io::Result<()> {
+fn list(root: &Path, below: &str, found: &mut Vec<Leftover>) -> io::Result<()> {
     for entry in fs::read_dir(root.join(below))? {
         let entry = entry?;
         // a file whose name is not valid UTF-8 cannot be sent
@@ -97,7 +97,7 @@ fn list(root: &Path, below: &str, found: &mut Vec<Found>) -> io::Result<()> {
         if metadata.is_dir() {
             drop(list(root, &path, found));
         } else if found.len() < MOST_FILES {
-            found.push(Found {
+            found.push(Leftover {
                 path,
                 bytes: metadata.len(),
                 is_file: metadata.is_file(),
@@ -108,12 +108,12 @@ fn list(root: &Path, below: &str, found: &mut Vec<Found>) -> io::Result<()> {
 }
 
 /// Returns whether a file of the run's folder is unchanged from the case, or is the folder's lock file.
-fn is_unchanged(root: &Path, one: &Found, own: &[File]) -> bool {
-    let name = one.path.strip_prefix(super::scratch::WORK);
+fn is_unchanged(root: &Path, one: &Leftover, own: &[File]) -> bool {
+    let name = one.path.strip_prefix(super::scratch_folder::WORK);
     let name = name.and_then(|rest| rest.strip_prefix('/'));
     let Some(name) = name else {
         // the lock of the folder
-        return one.path == super::scratch::LOCK;
+        return one.path == super::scratch_folder::LOCK;
     };
     let same = own.iter().find(|file| file.path == name);
     same.is_some_and(|file| {

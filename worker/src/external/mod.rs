@@ -14,7 +14,7 @@ mod leftover_files;
 mod model;
 mod own_folder;
 mod run;
-mod scratch;
+mod scratch_folder;
 mod simulator;
 pub mod start;
 
@@ -24,9 +24,9 @@ pub use simulator::Externals;
 pub(crate) fn remove_abandoned() {
     // without a list nothing was ever started here
     let allowed = exchange::allow::read(&exchange::allow::path()).unwrap_or_default();
-    let places = allowed.entry.values().map(scratch::parent);
+    let places = allowed.entry.values().map(scratch_folder::parent);
     let places: std::collections::BTreeSet<std::path::PathBuf> = places.collect();
     for place in places {
-        scratch::clean(&place);
+        scratch_folder::clean(&place);
     }
 }

@@ -4,7 +4,7 @@ use super::{
     gather::{Outputs, Readings, evaluate_equations},
     leftover_files,
     run::{self, RunPermit},
-    scratch::{self, Scratch},
+    scratch_folder::{self, ScratchFolder},
 };
 use crate::simulator::Model;
 use exchange::allow::AllowEntry;
@@ -84,8 +84,8 @@ impl Prepared {
             });
             Ok((*status, word?))
         };
-        let place = scratch::parent(&entry);
-        scratch::clean(&place);
+        let place = scratch_folder::parent(&entry);
+        scratch_folder::clean(&place);
         Ok(Self {
             templates: Templates::new(&external.fills).map_err(wrong("model.inputs"))?,
             readings: Readings::new(&external.readings).map_err(wrong("model.outputs"))?,
@@ -156,7 +156,7 @@ impl Prepared {
             .map_err(|problem| Failure::misconfigured("model.inputs", problem.to_string()))?;
         let turn = RunPermit::acquire(&self.place, &self.name, &self.entry)
             .map_err(|error| crashed(format!("{}: {error}", self.place.display())))?;
-        let mut scratch = Scratch::new(&self.place).map_err(|error| {
+        let mut scratch = ScratchFolder::new(&self.place).map_err(|error| {
             crashed(format!(
                 "cannot create a working folder in {}: {error}",
                 self.place.display()
@@ -182,7 +182,11 @@ impl Prepared {
     }
 
     /// Runs the program in a prepared folder and reads its output files.
-    fn run_program(&self, spec: &SimulateSpec, scratch: &Scratch) -> Result<Observation, Failure> {
+    fn run_program(
+        &self,
+        spec: &SimulateSpec,
+        scratch: &ScratchFolder,
+    ) -> Result<Observation, Failure> {
         let status = run::run(&self.entry, scratch, self.deadline())?;
         let shown = self.entry.program.display();
         if !status.success() {
@@ -273,7 +277,7 @@ impl Prepared {
 
     /// Adds the files of the working folder to a failure, and keeps the folder if the program's entry asks
     /// for it.
-    fn attach_files(&self, mut failure: Failure, scratch: &mut Scratch) -> Failure {
+    fn attach_files(&self, mut failure: Failure, scratch: &mut ScratchFolder) -> Failure {
         if let Failure::Crashed { left, .. } | Failure::Deadline { left, .. } = &mut failure
             && self.sent.fetch_add(1, Ordering::Relaxed) < MAX_FOLDERS_SENT
         {

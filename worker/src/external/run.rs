@@ -1,6 +1,6 @@
 //! Runs an external program once: starts it within its limits, monitors it, and ends it with all processes it
 //! started.
-use super::{own_folder, scratch::Scratch};
+use super::{own_folder, scratch_folder::ScratchFolder};
 use crate::process_tree;
 use exchange::allow::AllowEntry;
 use protocol::job::{Failure, LAST_OUTPUT, NO_OUTPUT};
@@ -33,7 +33,7 @@ const INHERITED_VARIABLES: [&str; 6] = ["PATH", "HOME", "LANG", "LC_ALL", "TZ", 
 /// not end in time.
 pub(super) fn run(
     entry: &AllowEntry,
-    scratch: &Scratch,
+    scratch: &ScratchFolder,
     deadline: Duration,
 ) -> Result<ExitStatus, Failure> {
     let crashed = Failure::crashed;
@@ -71,7 +71,7 @@ enum Stopped {
     Unknown(io::Error),
 }
 
-fn begin(entry: &AllowEntry, scratch: &Scratch) -> io::Result<Child> {
+fn begin(entry: &AllowEntry, scratch: &ScratchFolder) -> io::Result<Child> {
     let said = File::create(scratch.output_path())?;
     let mut command = Command::new(env::current_exe()?);
     command
@@ -103,7 +103,7 @@ fn begin(entry: &AllowEntry, scratch: &Scratch) -> io::Result<Child> {
 fn watch(
     child: &mut Child,
     entry: &AllowEntry,
-    scratch: &Scratch,
+    scratch: &ScratchFolder,
     until: Instant,
 ) -> Result<ExitStatus, Stopped> {
     let (over, ended) = mpsc::channel();
@@ -142,7 +142,7 @@ fn watch(
 }
 
 /// Describes a program's exit status, with the last lines of its output.
-pub(super) fn describe_status(status: ExitStatus, scratch: &Scratch) -> String {
+pub(super) fn describe_status(status: ExitStatus, scratch: &ScratchFolder) -> String {
     // a shell says the signal that ended what it had started
     let of_child = status.code().filter(|code| (129..160).contains(code));
     let signal = status.signal().or(of_child.map(|code| code - 128));
@@ -159,7 +159,7 @@ pub(super) fn describe_status(status: ExitStatus, scratch: &Scratch) -> String {
 }
 
 /// Formats the last lines of a program's output as the end of a message.
-pub(super) fn output_tail(scratch: &Scratch) -> String {
+pub(super) fn output_tail(scratch: &ScratchFolder) -> String {
     let text = tail(&scratch.output_path()).unwrap_or_default();
     // the folder is another one in every run, and names the files in it
     let folder = format!("{}/", scratch.work().display());
@@ -196,7 +196,7 @@ fn tail(path: &Path) -> io::Result<String> {
 /// # Errors
 /// A message if the file is missing, is not a regular file, or is longer than the program's entry allows.
 pub(super) fn read_output(
-    scratch: &Scratch,
+    scratch: &ScratchFolder,
     file: &str,
     entry: &AllowEntry,
 ) -> Result<String, String> {

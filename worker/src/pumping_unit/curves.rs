@@ -2,8 +2,8 @@
 use super::completed_run::CompletedRun;
 use super::machines::Machines;
 use protocol::{
-    job::{Curves, Failure, SimulateSpec},
-    pumping_unit::{Energy, MachineSnapshot, Simulation},
+    job::{Curves, Failure, SimulateSpec, to_single_precision},
+    pumping_unit::{Energy, HeadLoads, MachineSnapshot, Simulation},
 };
 use simulation::observe::{Recorder, Shape};
 use simulation::run::RunResult;
@@ -18,7 +18,7 @@ pub(super) fn run(
     pictures: u32,
 ) -> Result<Curves, Failure> {
     let step_deg = machines.unit.machine.run.output_step_deg;
-    let recorder = Recorder::everything(samples_apart(pictures, step_deg));
+    let recorder = Recorder::everything(samples_apart(pictures, step_deg)).with_head_loads();
     let plain = SimulateSpec {
         columns: Vec::new(),
         ..spec.clone()
@@ -46,6 +46,7 @@ pub(super) fn run(
         suspension_acceleration_m_s2: acceleration,
         crank_torque_n_m: curves.torque,
         modal: curves.modal,
+        head_loads: head_loads(&curves.head_loads),
         energy: energy(&ran.result),
         motion: shapes.map(|shape| motion(shape, step_deg)).collect(),
     };
@@ -94,6 +95,17 @@ fn energy(result: &RunResult) -> Energy {
         } else {
             0.0
         },
+    }
+}
+
+/// Converts the loads of the back head to the protocol's type.
+fn head_loads(loads: &simulation::observe::HeadLoadCurves) -> HeadLoads {
+    let single = |curve: &Vec<f64>| to_single_precision(curve.iter().copied());
+    HeadLoads {
+        normal_n: loads.normal.iter().map(single).collect(),
+        anchor_n: loads.anchor.each_ref().map(single),
+        acceleration: loads.acceleration.each_ref().map(single),
+        modal: loads.beyond.iter().map(single).collect(),
     }
 }
 

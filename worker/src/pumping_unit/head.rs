@@ -44,6 +44,11 @@ pub(super) fn head(machine: &Machine) -> Result<Head, Failure> {
         turning_stress: base_stress[2],
         influence_start,
         influence_step,
+        load_breaks: machine
+            .load_breaks_deg()
+            .iter()
+            .map(|x| x.to_radians())
+            .collect(),
         normal_influence: curves(&head.influence.normal_mpa_per_n),
         tangential_influence: curves(&head.influence.tangential_mpa_per_n),
     })

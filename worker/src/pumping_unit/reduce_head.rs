@@ -3,8 +3,8 @@ use protocol::pumping_unit::{Influence, TwinHead};
 use protocol::{
     job::Failure,
     pumping_unit::{
-        ElementKind, HeadFields, HeadMode, ModeFamily, OmittedMode, ReduceHeadSpec, ReducedHead,
-        RopeWrap,
+        ElementKind, HeadFields, HeadMode, HeadSurface, ModeFamily, OmittedMode, ReduceHeadSpec,
+        ReducedHead, RopeWrap,
     },
 };
 use simulation::flexible::{
@@ -33,6 +33,7 @@ pub(super) fn run(spec: &ReduceHeadSpec) -> Result<ReducedHead, Failure> {
         anchor: wrap.anchor_deg.to_radians(),
         leaves: wrap.leaves_deg.to_radians(),
     };
+    let breaks = spec.surface_deg.as_deref().map(radians);
     let started = Instant::now();
     let reduction = reduce(&ReductionRequest {
         mesh: &mesh,
@@ -53,6 +54,7 @@ pub(super) fn run(spec: &ReduceHeadSpec) -> Result<ReducedHead, Failure> {
         }),
         modes: spec.modes,
         families: &families,
+        surface: breaks.as_deref(),
         fields: spec.fields,
     })
     .map_err(|error| Failure::misconfigured("flexible_head", error.to_string()))?;
@@ -217,6 +219,7 @@ fn assemble(spec: &ReduceHeadSpec, reduction: &Reduction, wall_s: f64) -> Reduce
         unknowns: reduction.unknowns,
         lanczos_steps: reduction.lanczos_steps,
         wall_s,
+        surface: reduction.surface.as_ref().map(surface),
         fields: spec.fields.then(|| fields(reduction)),
     }
 }
@@ -235,5 +238,28 @@ fn fields(reduction: &Reduction) -> HeadFields {
             .iter()
             .map(|stress| stress.map(|s| (s * MEGAPASCAL_PER_PASCAL) as f32))
             .collect(),
+    }
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "a mesh of four billion nodes does not fit into memory, and finite elements are no better than single precision"
+)]
+fn surface(surface: &flexible::SurfaceStress) -> HeadSurface {
+    let points = || surface.points.iter();
+    let stress = |stress: &[f64; 6]| stress.map(|s| (s * MEGAPASCAL_PER_PASCAL) as f32);
+    let of_load = |load: &Vec<[f64; 6]>| load.iter().map(stress).collect();
+    HeadSurface {
+        places_m: points().map(|point| point.place).collect(),
+        normals: points()
+            .map(|point| point.normal.map(|x| x as f32))
+            .collect(),
+        held: points().map(|point| point.held).collect(),
+        faces: surface
+            .faces
+            .iter()
+            .map(|face| face.map(|k| k as u32))
+            .collect(),
+        stress_mpa: surface.stress.iter().map(of_load).collect(),
     }
 }

@@ -17,7 +17,7 @@ pub fn run_settings(machine: &Machine) -> RunSettings {
         ramp: machine.run.ramp_s,
         samples,
         tolerance: machine.run.tolerance,
-        method: method(machine.run.integrator, machine.run.spectral_radius),
+        method: method(machine.run.integrator),
         longest_step: machine.run.longest_step_s,
         budget: machine.run.iteration_budget,
         ..RunSettings::default()
@@ -40,13 +40,9 @@ pub(super) fn discretised_settings(
     settings
 }
 
-fn method(integrator: Integrator, spectral_radius: f64) -> Method {
+const fn method(integrator: Integrator) -> Method {
     match integrator {
-        Integrator::TrBdf2 => (&TR_BDF2).into(),
-        Integrator::Esdirk4 => (&ESDIRK4).into(),
-        Integrator::Rodas4 => Method::Rosenbrock,
-        Integrator::GeneralizedAlpha => Method::GeneralizedAlpha { spectral_radius },
-        Integrator::Bdf => Method::Bdf { highest: 2 },
-        Integrator::Bdf5 => Method::Bdf { highest: 5 },
+        Integrator::TrBdf2 => Method::RungeKutta(&TR_BDF2),
+        Integrator::Esdirk4 => Method::RungeKutta(&ESDIRK4),
     }
 }

@@ -1,9 +1,14 @@
 //! Entry that a machine's allow list needs before its workers may run a case's program, built from the case's
 //! proposal.
-use super::file::CommandCaseFile;
-use crate::{CaseError, Overrides, document::DocumentStep, load_with_notes, source::document};
+use super::{file::CommandCaseFile, kind::CommandModel};
+use crate::{
+    CaseError, Overrides,
+    case_kind::ModelKind as _,
+    document::DocumentStep,
+    source::{RecordFolder, document, stated_kind},
+};
 use exchange::allow::AllowEntry;
-use protocol::external::{External, entry_of};
+use protocol::external::{External, KIND, entry_of};
 use std::{
     env,
     path::{Component, Path, PathBuf},
@@ -31,17 +36,23 @@ pub struct EntryProposal {
 /// Whether this machine has the program does not matter: the case may be prepared here for others.
 pub fn propose_entry(folder: &Path) -> Result<EntryProposal, CaseError> {
     let overrides = Overrides::default();
-    let case = load_with_notes(folder, &overrides)?.case;
     let document = document(folder, &overrides)?;
-    let Some((name, external)) = entry_of(&case.model.kind).zip(External::of(&case.model).ok())
-    else {
-        return Err(document.field(
+    let stated = stated_kind(&document)?;
+    let other_kind = || {
+        document.field(
             &[DocumentStep::Key("model"), DocumentStep::Key("kind")],
-            format!("\"{}\"", case.model.kind),
+            format!("\"{stated}\""),
             "\"command\": only cases with a program of the user's own need an entry in the allow list",
             "do nothing: a case of another kind needs no entry in the allow list",
-        ));
+        )
     };
+    if stated.split(':').next() != Some(KIND) {
+        return Err(other_kind());
+    }
+    let location = RecordFolder::new(folder, &overrides, &document);
+    let model = CommandModel.read(&location)?.case.model;
+    let external = External::of(&model).ok();
+    let (name, external) = entry_of(&model.kind).zip(external).ok_or_else(other_kind)?;
     let own: CommandCaseFile = document.parse()?;
     let Some((program, arguments)) = own.model.command.split_first() else {
         return Err(document.field(

@@ -90,24 +90,24 @@ fn remedy(name: &str, known: &[&str]) -> String {
 impl Assembly<'_> {
     fn field_error(
         &self,
-        way: &[DocumentStep<'_>],
+        keys: &[DocumentStep<'_>],
         value: impl std::fmt::Display,
         allowed: &str,
         help: &str,
     ) -> CaseError {
-        self.document.field(way, value, allowed, help)
+        self.document.field(keys, value, allowed, help)
     }
 
     /// Builds the error for an undefined name, with the most similar defined name as a suggestion.
     fn unknown(
         &self,
-        way: &[DocumentStep<'_>],
+        keys: &[DocumentStep<'_>],
         name: &str,
         allowed: &str,
         names: &[&str],
     ) -> CaseError {
         let help = remedy(name, names);
-        self.field_error(way, format!("\"{name}\""), allowed, &help)
+        self.field_error(keys, format!("\"{name}\""), allowed, &help)
     }
 
     /// Returns the error for an unknown name in a template, with its place there.
@@ -148,9 +148,9 @@ impl Assembly<'_> {
             .into_iter()
             .find(|key| names().all(|name| name != *key))
         {
-            let way = ["model", "parameters", strange].map(DocumentStep::Key);
+            let keys = ["model", "parameters", strange].map(DocumentStep::Key);
             return Err(self.unknown(
-                &way,
+                &keys,
                 strange,
                 "the name of an unknown of the case",
                 &names().collect::<Vec<_>>(),
@@ -182,13 +182,13 @@ impl Assembly<'_> {
         if names(values) == names(first) {
             return Ok(());
         }
-        let way = [
+        let keys = [
             DocumentStep::Key("conditions"),
             DocumentStep::Index(index),
             DocumentStep::Key("values"),
         ];
         Err(self.field_error(
-            &way,
+            &keys,
             names(values).join(", "),
             &format!(
                 "the names that the first condition sets: {}",
@@ -238,21 +238,21 @@ impl Assembly<'_> {
     /// Checks the analysis components of an input file.
     fn check_components(
         &self,
-        way: &[DocumentStep<'_>],
+        keys: &[DocumentStep<'_>],
         input: &InputEntry,
     ) -> Result<(), CaseError> {
         if input.dakota.is_none() && !input.components.is_empty() {
             let allowed = "absent, unless the file is a parameters file of Dakota";
             let help = "state `dakota` for the file, or remove `components`";
             let stated = input.components.join(", ");
-            return Err(self.field_error(way, stated, allowed, help));
+            return Err(self.field_error(keys, stated, allowed, help));
         }
         let is_breaking = |text: &&String| text.contains(['"', '\n', '\r']);
         if let Some(text) = input.components.iter().find(is_breaking) {
             let allowed =
                 "texts of one line without double quotes, which are signs of the file's form";
             let help = "write the component without them";
-            return Err(self.field_error(way, text.escape_debug(), allowed, help));
+            return Err(self.field_error(keys, text.escape_debug(), allowed, help));
         }
         Ok(())
     }
@@ -264,7 +264,7 @@ impl Assembly<'_> {
     ) -> Result<Vec<InputFile>, CaseError> {
         let inputs = self.model.inputs.iter().enumerate();
         let fill = |(index, input): (usize, &InputEntry)| {
-            let way = |key| {
+            let keys = |key| {
                 let list = [DocumentStep::Key("model"), DocumentStep::Key("inputs")];
                 [
                     list[0],
@@ -273,13 +273,13 @@ impl Assembly<'_> {
                     DocumentStep::Key(key),
                 ]
             };
-            self.check_components(&way("components"), input)?;
+            self.check_components(&keys("components"), input)?;
             let (form, names) = match (&input.template, &input.braces, &input.dakota) {
                 (Some(path), None, None) => {
                     let text = self.text(path, "a template that `inputs` names")?;
                     let template = pest::Template::parse(&path.to_string_lossy(), &text);
                     let template =
-                        template.map_err(|problem| self.problem(&way("template"), &problem))?;
+                        template.map_err(|problem| self.problem(&keys("template"), &problem))?;
                     let fields = template.fields();
                     self.check_widths(path, &fields, written)?;
                     (InputFormat::Pest(text), fields.into_keys().collect())
@@ -288,7 +288,7 @@ impl Assembly<'_> {
                     let text = self.text(path, "a text file that `inputs` names")?;
                     let template = dakota::Template::parse(&path.to_string_lossy(), &text);
                     let template =
-                        template.map_err(|problem| self.problem(&way("braces"), &problem))?;
+                        template.map_err(|problem| self.problem(&keys("braces"), &problem))?;
                     (
                         InputFormat::Braces(text),
                         template.fields().into_iter().collect(),
@@ -303,13 +303,13 @@ impl Assembly<'_> {
                 }
                 (None, None, Some(form)) => {
                     let allowed = "standard, aprepro or json";
-                    return Err(self.field_error(&way("dakota"), form, allowed, "correct it"));
+                    return Err(self.field_error(&keys("dakota"), form, allowed, "correct it"));
                 }
                 _ => {
                     let allowed = "exactly one of template, braces and dakota";
                     let help =
                         "state exactly one of `template`, `braces` and `dakota` for the file";
-                    return Err(self.field_error(&way("file"), &input.file, allowed, help));
+                    return Err(self.field_error(&keys("file"), &input.file, allowed, help));
                 }
             };
             for name in &names {
@@ -324,7 +324,7 @@ impl Assembly<'_> {
                     {
                         return Err(self.unknown_in(path, text, (name, allowed), &known));
                     }
-                    return Err(self.unknown(&way("file"), name, allowed, &known));
+                    return Err(self.unknown(&keys("file"), name, allowed, &known));
                 }
             }
             Ok(InputFile {
@@ -341,7 +341,7 @@ impl Assembly<'_> {
         let mut named = BTreeSet::new();
         let outputs = self.model.outputs.iter().enumerate();
         let reading = |(index, output): (usize, &OutputEntry)| {
-            let way = |key| {
+            let keys = |key| {
                 let list = [DocumentStep::Key("model"), DocumentStep::Key("outputs")];
                 [
                     list[0],
@@ -353,14 +353,14 @@ impl Assembly<'_> {
             if output.gradients && output.dakota.is_none() {
                 let allowed = "absent, unless the file is a results file of Dakota";
                 let help = "state `dakota` for the file, or remove `gradients`";
-                return Err(self.field_error(&way("gradients"), true, allowed, help));
+                return Err(self.field_error(&keys("gradients"), true, allowed, help));
             }
             let form = match (&output.instructions, &output.dakota) {
                 (Some(path), None) => {
                     let text = self.text(path, "instructions that `outputs` names")?;
                     let read = pest::Instructions::parse(&path.to_string_lossy(), &text);
                     let read =
-                        read.map_err(|problem| self.problem(&way("instructions"), &problem))?;
+                        read.map_err(|problem| self.problem(&keys("instructions"), &problem))?;
                     named.extend(read.observations());
                     OutputFormat::Pest(text)
                 }
@@ -382,7 +382,7 @@ impl Assembly<'_> {
                 (Some(_), Some(_)) => {
                     let allowed = "no more than one of instructions and dakota";
                     let help = "remove `instructions` or `dakota`";
-                    return Err(self.field_error(&way("file"), &output.file, allowed, help));
+                    return Err(self.field_error(&keys("file"), &output.file, allowed, help));
                 }
             };
             Ok(OutputFile {
@@ -399,14 +399,14 @@ impl Assembly<'_> {
         let equation = |(index, entry): (usize, &super::file::EquationEntry)| {
             let term = |term: &super::file::TermEntry| {
                 if !known.contains(&term.parameter) {
-                    let way = [
+                    let keys = [
                         DocumentStep::Key("model"),
                         DocumentStep::Key("equations"),
                         DocumentStep::Index(index),
                     ];
                     let allowed = "the name of an unknown, or of a value of the conditions";
                     let known: Vec<&str> = known.iter().map(String::as_str).collect();
-                    return Err(self.unknown(&way, &term.parameter, allowed, &known));
+                    return Err(self.unknown(&keys, &term.parameter, allowed, &known));
                 }
                 Ok(EquationTerm {
                     parameter: term.parameter.clone(),
@@ -471,10 +471,10 @@ impl Assembly<'_> {
         if from >= first - slack && to <= last + slack {
             return Ok(());
         }
-        let way = [DocumentStep::Key("channels"), DocumentStep::Index(index)];
+        let keys = [DocumentStep::Key("channels"), DocumentStep::Index(index)];
         let unit = &channel.abscissa.unit;
         Err(self.field_error(
-            &way,
+            &keys,
             format!("channel `{}` from {from} to {to} {unit}", channel.name),
             &format!("abscissa values from {first} to {last} {unit}, the range of the program's curve in {left}"),
             &format!(
@@ -491,7 +491,7 @@ impl Assembly<'_> {
         readings: &[OutputFile],
         named: &BTreeSet<String>,
     ) -> Result<From, CaseError> {
-        let way = [
+        let keys = [
             DocumentStep::Key("channels"),
             DocumentStep::Index(index),
             DocumentStep::Key("source"),
@@ -501,7 +501,7 @@ impl Assembly<'_> {
         let help = "state the output file and the values of it that form the channel";
         let Some(entry) = &channel.source else {
             let value = format!("absent of channel `{}`", channel.name);
-            return Err(self.field_error(&way, value, allowed, help));
+            return Err(self.field_error(&keys, value, allowed, help));
         };
         let SourceEntry {
             named: names,
@@ -514,19 +514,19 @@ impl Assembly<'_> {
             if let Some(strange) = names.iter().find(|name| !named.contains(*name)) {
                 let allowed = "a value that instructions, functions or equations name";
                 let named: Vec<&str> = named.iter().map(String::as_str).collect();
-                return Err(self.unknown(&way, strange, allowed, &named));
+                return Err(self.unknown(&keys, strange, allowed, &named));
             }
             return Ok(From::Named(names.clone()));
         }
         let (Some(file), None) = (file, names) else {
-            return Err(self.field_error(&way, "an invalid combination of keys", allowed, help));
+            return Err(self.field_error(&keys, "an invalid combination of keys", allowed, help));
         };
         let Some(reading) = readings.iter().position(|reading| reading.file == *file) else {
             let files: Vec<&str> = readings
                 .iter()
                 .map(|reading| reading.file.as_str())
                 .collect();
-            return Err(self.unknown(&way, file, "the file of one of the outputs", &files));
+            return Err(self.unknown(&keys, file, "the file of one of the outputs", &files));
         };
         match (&readings[reading].form, column, values) {
             (OutputFormat::Table, Some(column), None) => Ok(From::Column {
@@ -539,7 +539,7 @@ impl Assembly<'_> {
                 values: values.clone(),
                 at: at.clone(),
             }),
-            _ => Err(self.field_error(&way, format!("file = \"{file}\""), allowed, help)),
+            _ => Err(self.field_error(&keys, format!("file = \"{file}\""), allowed, help)),
         }
     }
 
@@ -554,22 +554,22 @@ impl Assembly<'_> {
                 .filter(|_| is_word)
                 .map(|number| (number, word.clone()))
                 .ok_or_else(|| {
-                    let way = ["model", "verdicts", status].map(DocumentStep::Key);
+                    let keys = ["model", "verdicts", status].map(DocumentStep::Key);
                     let allowed =
                         "an exit status from 1 to 255 with a word of lower-case letters, digits and `_`";
-                    self.field_error(&way, word, allowed, "as in verdicts = { 3 = \"diverged\" }")
+                    self.field_error(&keys, word, allowed, "as in verdicts = { 3 = \"diverged\" }")
                 })
         };
         self.model.verdicts.iter().map(verdict).collect()
     }
 
     /// Converts a problem in a PEST template or instruction file to a case error.
-    fn problem(&self, way: &[DocumentStep<'_>], problem: &Problem) -> CaseError {
+    fn problem(&self, keys: &[DocumentStep<'_>], problem: &Problem) -> CaseError {
         let place = problem
             .line
             .map_or_else(String::new, |line| format!(", line {line}"));
         self.document.field(
-            way,
+            keys,
             format!("{}{place}: {}", problem.file, problem.found),
             problem.allowed.clone(),
             &problem.remedy,

@@ -30,13 +30,13 @@ pub(super) fn read(
     let mut bytes = 0;
     for (index, path) in named.iter().enumerate() {
         let refused = |problem: &str, help: &str| {
-            let way = [
+            let keys = [
                 DocumentStep::Key("model"),
                 DocumentStep::Key("files"),
                 DocumentStep::Index(index),
             ];
             let value = format!("\"{}\"", path.display());
-            document.field(&way, value, problem, help)
+            document.field(&keys, value, problem, help)
         };
         if !is_below(path) {
             return Err(refused(

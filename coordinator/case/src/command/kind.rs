@@ -14,7 +14,7 @@ use crate::{
 };
 use protocol::{
     case::{Case, ModelSettings, Reproducibility},
-    external::{External, KIND, entry_of, kind_of},
+    external::{External, entry_of, kind_of},
     wire,
 };
 use record::Curves;
@@ -26,24 +26,21 @@ const LONGEST_S: f64 = 604_800.0;
 /// share of a channel's root mean square.
 const MOST_TOLERANCE: f64 = 1.0;
 
-/// Kind of model for programs of the user's own.
-pub(crate) struct CommandKind;
+/// Model that is a program of the user's own.
+#[derive(Clone, Copy, Debug)]
+pub struct CommandModel;
 
-impl ModelKind for CommandKind {
-    fn name(&self) -> &'static str {
-        KIND
-    }
-
+impl ModelKind for CommandModel {
     fn read(&self, source: &RecordFolder<'_>) -> Result<Loaded, CaseError> {
         let document = source.document;
         let own: CommandCaseFile = document.parse()?;
-        let way = |key| [DocumentStep::Key("model"), DocumentStep::Key(key)];
+        let keys = |key| [DocumentStep::Key("model"), DocumentStep::Key(key)];
         let entry = &own.model.entry;
         let is_plain =
             |letter: char| letter.is_ascii_alphanumeric() || matches!(letter, '_' | '-' | '.');
         if entry.is_empty() || entry.len() > 64 || !entry.chars().all(is_plain) {
             return Err(document.field(
-                &way("entry"),
+                &keys("entry"),
                 format!("\"{entry}\""),
                 "1 to 64 letters, digits, `_`, `-` and `.`",
                 "name the entry of the workers' lists that starts the program",
@@ -60,7 +57,7 @@ impl ModelKind for CommandKind {
         let external = assemble(source, &own, &loaded.case)?;
         let settings = wire::encode(&external).map_err(|error| {
             document.field(
-                &way("files"),
+                &keys("files"),
                 error.to_string(),
                 "files that fit into one message to the workers",
                 "remove large files from `files` and install them on the workers",
@@ -133,13 +130,13 @@ fn repeats(document: &Document, model: &ModelEntry) -> Result<Reproducibility, C
             Reproducibility::Unknown
         });
     };
-    let way = [
+    let keys = [
         DocumentStep::Key("model"),
         DocumentStep::Key("reference_tolerance"),
     ];
     if model.repeatable {
         return Err(document.field(
-            &way,
+            &keys,
             tolerance,
             "absent beside `repeatable = true`",
             "bit-identical results need no tolerance: remove `repeatable` or `reference_tolerance`",

@@ -83,7 +83,7 @@ pub(super) fn read(
     let records = entries.iter().filter_map(|entry| entry.record.as_ref());
     let mut tables = Tables::new(&records.collect::<Vec<_>>());
     let mut read = |(index, entry): (usize, &ChannelEntry)| {
-        let way = [
+        let keys = [
             DocumentStep::Key("channels"),
             DocumentStep::Index(index),
             DocumentStep::Key("name"),
@@ -92,7 +92,7 @@ pub(super) fn read(
             |other: &ChannelEntry| other.name == entry.name && other.condition == entry.condition;
         let is_there = entries[..index].iter().any(twin);
         let what = "channel of its condition";
-        names::check_one(document, &way, what, &entry.name, is_there)?;
+        names::check_one(document, &keys, what, &entry.name, is_there)?;
         let source = ChannelReader {
             document,
             index,
@@ -113,15 +113,13 @@ struct ChannelReader<'a> {
 impl ChannelReader<'_> {
     /// Builds an error about a field of the channel entry.
     fn field_error(&self, keys: &[&str], value: String, allowed: &str, help: &str) -> CaseError {
-        let way = [
+        let entry = [
             DocumentStep::Key("channels"),
             DocumentStep::Index(self.index),
-        ]
-        .into_iter();
-        let way: Vec<DocumentStep<'_>> = way
-            .chain(keys.iter().map(|key| DocumentStep::Key(key)))
-            .collect();
-        self.document.field(&way, value, allowed, help)
+        ];
+        let below = keys.iter().map(|key| DocumentStep::Key(key));
+        let keys: Vec<DocumentStep<'_>> = entry.into_iter().chain(below).collect();
+        self.document.field(&keys, value, allowed, help)
     }
 
     fn read(

@@ -116,7 +116,7 @@ fn check_term(
     own: &[&ReadChannel],
 ) -> Result<(), CaseError> {
     let term = &terms[index];
-    let way = |key| {
+    let keys = |key| {
         let list = [DocumentStep::Key("objective"), DocumentStep::Key("terms")];
         [
             list[0],
@@ -133,7 +133,7 @@ fn check_term(
         names.dedup();
         return Err(unknown(
             document,
-            &way("channel"),
+            &keys("channel"),
             &term.channel,
             "channel",
             &names,
@@ -142,7 +142,7 @@ fn check_term(
     let mut named = own.iter().filter(called);
     if named.all(|read| read.channel.record.is_none()) {
         return Err(document.field(
-            &way("channel"),
+            &keys("channel"),
             quoted,
             "a channel with a record",
             "there is nothing to compare with: add a record to it, or take another",
@@ -153,7 +153,7 @@ fn check_term(
         .any(|other| other.channel == term.channel)
     {
         return Err(document.field(
-            &way("channel"),
+            &keys("channel"),
             quoted,
             "each channel once",
             "add the weights of the two",
@@ -161,7 +161,7 @@ fn check_term(
     }
     if !(term.weight > 0.0 && term.weight.is_finite()) {
         return Err(document.field(
-            &way("weight"),
+            &keys("weight"),
             term.weight,
             "above 0",
             "remove the term of a channel that is not part of the objective",
@@ -173,14 +173,14 @@ fn check_term(
 /// Builds the error for an unknown name, with the most similar known name as a suggestion.
 fn unknown(
     document: &Document,
-    way: &[DocumentStep<'_>],
+    keys: &[DocumentStep<'_>],
     name: &str,
     what: &str,
     names: &[&str],
 ) -> CaseError {
     let near = nearest(name, names.iter().copied());
     document.field(
-        way,
+        keys,
         format!("\"{name}\""),
         format!("the name of a {what}: {}", names.join(", ")),
         &near.map_or(format!("name one of them, or add a {what}"), |near| {

@@ -20,7 +20,7 @@ pub(super) fn read(
 ) -> Result<Vec<Unknown>, CaseError> {
     let all: Vec<&str> = entries.iter().map(|entry| entry.name.as_str()).collect();
     names::check_program_names(document, "unknowns", "unknown", &all)?;
-    let way = |index, field| {
+    let keys = |index, field| {
         [
             DocumentStep::Key("unknowns"),
             DocumentStep::Index(index),
@@ -30,14 +30,14 @@ pub(super) fn read(
     let unknowns = entries.iter().enumerate().map(|(index, entry)| {
         let mut own = unknown(entry, start(entry, entries, entries.len()));
         if let Some(prior) = entry.prior {
-            own.prior = Some(prior.of(&own, document, &way(index, "prior"))?);
+            own.prior = Some(prior.of(&own, document, &keys(index, "prior"))?);
         }
         Ok(own)
     });
     let unknowns = unknowns.collect::<Result<Vec<Unknown>, CaseError>>()?;
     check_unknowns(&unknowns).map_err(|bad| {
-        let way = way(bad.position, bad.field);
-        document.field(&way, bad.found, bad.allowed, bad.remedy)
+        let keys = keys(bad.position, bad.field);
+        document.field(&keys, bad.found, bad.allowed, bad.remedy)
     })?;
     Ok(unknowns)
 }

@@ -77,14 +77,14 @@ impl Conditions<'_> {
                 "add it",
             ));
         };
-        let way = |key| {
+        let keys = |key| {
             [
                 DocumentStep::Key("conditions"),
                 DocumentStep::Index(index),
                 DocumentStep::Key(key),
             ]
         };
-        check_condition(self.source.document, entry, way)?;
+        check_condition(self.source.document, entry, keys)?;
         let role = format!(
             "the load card of condition `{}` in {}",
             entry.name,
@@ -113,7 +113,7 @@ impl Conditions<'_> {
             && kept as usize > highest
         {
             return Err(self.source.document.field(
-                &way("smoothing"),
+                &keys("smoothing"),
                 format!("{{ harmonics = {kept} }}"),
                 format!(
                     "1 to {highest}: a card of {} points has no more",
@@ -213,11 +213,11 @@ impl Conditions<'_> {
 fn check_condition<'a>(
     document: &Document,
     entry: &ConditionEntry,
-    way: impl Fn(&'static str) -> [DocumentStep<'a>; 3],
+    keys: impl Fn(&'static str) -> [DocumentStep<'a>; 3],
 ) -> Result<(), CaseError> {
     if !(0.1..=60.0).contains(&entry.speed_rpm) {
         return Err(document.field(
-            &way("speed_rpm"),
+            &keys("speed_rpm"),
             entry.speed_rpm,
             "0.1 to 60 revolutions per minute",
             "give the crank speed, not the motor's",
@@ -225,7 +225,7 @@ fn check_condition<'a>(
     }
     if !(0.0..=1.0e7).contains(&entry.counterweight_moment_n_m) {
         return Err(document.field(
-            &way("counterweight_moment_n_m"),
+            &keys("counterweight_moment_n_m"),
             entry.counterweight_moment_n_m,
             "0 to 1e7 N m",
             "give weight times radius of the counterweights in N m",

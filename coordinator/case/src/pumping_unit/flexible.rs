@@ -282,11 +282,11 @@ fn stated_gauges(
     let Some(gauges) = &flexible.gauges else {
         return Ok(None);
     };
-    let way = ["flexible_head", "gauges"].map(DocumentStep::Key);
+    let keys = ["flexible_head", "gauges"].map(DocumentStep::Key);
     let places = head::places(gauges).filter(|_| gauges.len() == 4);
     let places = places.ok_or_else(|| {
         document.field(
-            &way,
+            &keys,
             format!("{{ {} }}", gauges.keys().cloned().collect::<Vec<_>>().join(", ")),
             "the gauges 1, 2, 3 and 4",
             "add gauges.N = { x_m = .., y_m = .., z_m = .., length_m = .. } for each, in the frame of the beam",
@@ -298,7 +298,7 @@ fn stated_gauges(
         let finite = numbers.copied().all(f64::is_finite);
         if !(finite && (1e-4..=1.0).contains(&gauge.length_m)) {
             return Err(document.field(
-                &way,
+                &keys,
                 format!(
                     "{:?}, length {}, direction {:?}",
                     gauge.position_m, gauge.length_m, gauge.direction

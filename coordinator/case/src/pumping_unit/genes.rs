@@ -50,21 +50,21 @@ fn gene(
             ),
         ));
     };
-    let way = |key| {
+    let keys = |key| {
         [
             DocumentStep::Key("genes"),
             DocumentStep::Key(name.as_str()),
             DocumentStep::Key(key),
         ]
     };
-    check_unit(document, &way("unit"), name, entry.unit)?;
+    check_unit(document, &keys("unit"), name, entry.unit)?;
     let recommended = match entry.recommended {
         Recommended::Value(value) => value,
         Recommended::Formula(formula) => match bodies.evaluate(formula, name) {
             Some(si) => si / entry.unit.si_factor(),
             None => {
                 return Err(document.field(
-                    &way("recommended"),
+                    &keys("recommended"),
                     format!("\"{}\"", formula.word()),
                     "a number; \"eq3\" for kb1, kb23, kb4 and kb56; \"hertz\" for kc where \
                      contact.exponent = 1.5",
@@ -79,11 +79,11 @@ fn gene(
         ("upper", entry.upper),
     ];
     for (key, value) in values {
-        check_value(document, &way(key), value, entry.unit)?;
+        check_value(document, &keys(key), value, entry.unit)?;
     }
     if entry.lower >= entry.upper {
         return Err(document.field(
-            &way("lower"),
+            &keys("lower"),
             entry.lower,
             format!("below upper = {} {}", entry.upper, entry.unit.symbol()),
             "exchange or widen the bounds",
@@ -91,7 +91,7 @@ fn gene(
     }
     if !(entry.lower..=entry.upper).contains(&recommended) {
         return Err(document.field(
-            &way("recommended"),
+            &keys("recommended"),
             recommended,
             format!("{} to {} {}", entry.lower, entry.upper, entry.unit.symbol()),
             "the bounds exclude the recommended value: widen them, or correct it",
@@ -100,7 +100,7 @@ fn gene(
     let bounds = [entry.lower, entry.upper];
     let mut gene = unknown(name, entry.unit, recommended, bounds);
     if let Some(prior) = entry.prior {
-        gene.prior = Some(prior.of(&gene, document, &way("prior"))?);
+        gene.prior = Some(prior.of(&gene, document, &keys("prior"))?);
     }
     Ok(gene)
 }
@@ -166,7 +166,7 @@ fn valley() -> Valley {
 /// Checks that the unit stated for a rope or contact coefficient has the right dimension.
 pub(super) fn check_unit(
     document: &Document,
-    way: &[DocumentStep<'_>],
+    keys: &[DocumentStep<'_>],
     name: Coefficient,
     unit: Unit,
 ) -> Result<(), CaseError> {
@@ -179,7 +179,7 @@ pub(super) fn check_unit(
         .map(Unit::symbol)
         .collect();
     Err(document.field(
-        way,
+        keys,
         format!("\"{}\"", unit.symbol()),
         format!("{} for {}", fitting.join(" or "), name.as_str()),
         &format!("state the value in a unit that fits; there are {}", units()),
@@ -189,7 +189,7 @@ pub(super) fn check_unit(
 /// Checks that a rope or contact coefficient is positive and finite, as its logarithmic scale requires.
 pub(super) fn check_value(
     document: &Document,
-    way: &[DocumentStep<'_>],
+    keys: &[DocumentStep<'_>],
     value: f64,
     unit: Unit,
 ) -> Result<(), CaseError> {
@@ -197,7 +197,7 @@ pub(super) fn check_value(
         return Ok(());
     }
     Err(document.field(
-        way,
+        keys,
         value,
         format!("above 0, at most {LARGEST:e} in SI [{}]", unit.symbol()),
         "stiffness and damping are positive and searched on a logarithmic scale",

@@ -10,7 +10,7 @@ use support::interpolation::interpolate_clamped;
 
 /// Threshold for the displacement of a mode shape along the rope surface, as a share of the table's largest
 /// value; a mode below it does not move the surface.
-const INERT: f64 = 1e-6;
+pub const INERT: f64 = 1e-6;
 
 /// Comparison of a newly reduced back head with the tables of a case.
 #[derive(Clone, Debug, PartialEq)]
@@ -121,7 +121,7 @@ pub fn compare_head(
 
 /// Returns the modal assurance criterion, the squared cosine of the angle between two shapes; 0 if a shape is
 /// zero.
-fn mac(a: &[f64], b: &[f64]) -> f64 {
+pub fn mac(a: &[f64], b: &[f64]) -> f64 {
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let sizes = dot(a, a) * dot(b, b);
     if sizes > 0.0 {

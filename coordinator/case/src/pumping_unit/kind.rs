@@ -4,16 +4,18 @@ use crate::{
     case_kind::ModelKind, error::CaseError, loaded::Loaded, source::RecordFolder,
     summary::CaseSummary,
 };
-use protocol::{case::Case, job::Numerics, pumping_unit::Machine, wire::WireError};
+use protocol::{
+    case::{Case, Unknown},
+    job::Numerics,
+    pumping_unit::{Coefficient, Machine},
+    wire::WireError,
+};
 
-/// Kind of model for pumping units with double horse heads.
-pub(crate) struct PumpingUnitKind;
+/// Pumping unit with double horse heads.
+#[derive(Clone, Copy, Debug)]
+pub struct PumpingUnitModel;
 
-impl ModelKind for PumpingUnitKind {
-    fn name(&self) -> &'static str {
-        Machine::KIND
-    }
-
+impl ModelKind for PumpingUnitModel {
     fn read(&self, source: &RecordFolder<'_>) -> Result<Loaded, CaseError> {
         read::read(source).map(|resolved| resolved.loaded)
     }
@@ -41,6 +43,23 @@ impl ModelKind for PumpingUnitKind {
         refinement: f64,
     ) -> Result<(Numerics, Vec<Numerics>), WireError> {
         numerics(case, step, refinement)
+    }
+
+    fn abscissa_origin(&self) -> &'static str {
+        " from bottom dead centre"
+    }
+
+    fn group(&self, unknown: &Unknown) -> &'static str {
+        match Coefficient::named(&unknown.name) {
+            Some(Coefficient::Kc | Coefficient::Cc) => "Contact",
+            Some(_) => "Rope joints",
+            None => "Unknowns",
+        }
+    }
+
+    fn frequency_hz(&self, case: &Case, condition: usize) -> Option<f64> {
+        let machine = Machine::of(case).ok()?;
+        Some(machine.conditions.get(condition)?.speed_rpm / 60.0)
     }
 
     fn unknowns_key(&self) -> &'static str {

@@ -49,7 +49,7 @@ fn check_output_step(document: &Document, step: f64) -> Result<(), CaseError> {
 /// Checks that the smoothing of the load cards is valid.
 fn check_smoothing(document: &Document, conditions: &[ConditionEntry]) -> Result<(), CaseError> {
     for (index, condition) in conditions.iter().enumerate() {
-        let way = |key| {
+        let keys = |key| {
             [
                 DocumentStep::Key("conditions"),
                 DocumentStep::Index(index),
@@ -65,7 +65,7 @@ fn check_smoothing(document: &Document, conditions: &[ConditionEntry]) -> Result
         };
         if let Some(allowed) = bad {
             return Err(document.field(
-                &way("smoothing"),
+                &keys("smoothing"),
                 format!("{:?}", condition.smoothing),
                 allowed,
                 "use smoothing = \"none\", { harmonics = 14 } or { moving_average_deg = 5.0 }",

@@ -34,7 +34,7 @@ pub use genes::unknown;
 pub use geometry::{Envelope, QuasiStaticTurn, quasi_static};
 pub use head::{GaugePlace, WrapStress};
 pub use head_comparison::{
-    HalfRanges, HeadComparison, ModeMatch, WrappedTurn, compare_head, wrapped_turn,
+    HalfRanges, HeadComparison, INERT, ModeMatch, WrappedTurn, compare_head, mac, wrapped_turn,
 };
 pub use head_source::{HeadSource, load_head};
 pub use record::{RecordFacts, count_samples};

@@ -100,7 +100,7 @@ struct StatedTerm {
     /// Whether the term is dropped if the record lacks its channel.
     optional: bool,
     /// Path to the key that states the term.
-    way: Vec<DocumentStep<'static>>,
+    keys: Vec<DocumentStep<'static>>,
     /// Value of that key.
     value: String,
     /// Column of the record from which the channel is read.
@@ -112,7 +112,7 @@ fn stated_terms(entry: &ObjectiveEntry) -> Vec<StatedTerm> {
     let gauge = |(at, own): (usize, &GaugeWeight)| StatedTerm {
         term: term(Sensor::Gauge(own.gauge), own.weight),
         optional: own.optional,
-        way: vec![
+        keys: vec![
             DocumentStep::Key("objective"),
             DocumentStep::Key("gauges"),
             DocumentStep::Index(at),
@@ -125,7 +125,7 @@ fn stated_terms(entry: &ObjectiveEntry) -> Vec<StatedTerm> {
         weight.map(|weight| StatedTerm {
             term: term(sensor, weight / unit),
             optional: false,
-            way: vec![DocumentStep::Key("objective"), DocumentStep::Key(key)],
+            keys: vec![DocumentStep::Key("objective"), DocumentStep::Key(key)],
             value: weight.to_string(),
             column: column.to_owned(),
         })
@@ -254,7 +254,7 @@ fn missing_channel(
     };
     let column = &lost.column;
     document.field(
-        &lost.way,
+        &lost.keys,
         &lost.value,
         format!("a channel that the record has: {}", recorded.join(", ")),
         &format!("name its column {column}{unused}; or {without}"),
@@ -279,7 +279,7 @@ fn check_gauges(document: &Document, gauges: &[GaugeWeight]) -> Result<(), CaseE
         ));
     }
     for (index, part) in gauges.iter().enumerate() {
-        let way = |key| {
+        let keys = |key| {
             [
                 DocumentStep::Key("objective"),
                 DocumentStep::Key("gauges"),
@@ -293,7 +293,7 @@ fn check_gauges(document: &Document, gauges: &[GaugeWeight]) -> Result<(), CaseE
             .any(|other| other.gauge == part.gauge);
         if !(1..=4).contains(&part.gauge) || twice {
             return Err(document.field(
-                &way("gauge"),
+                &keys("gauge"),
                 part.gauge,
                 "1 to 4, each once",
                 "gauges are numbered as in the record's columns stress_1_mpa .. stress_4_mpa",
@@ -301,7 +301,7 @@ fn check_gauges(document: &Document, gauges: &[GaugeWeight]) -> Result<(), CaseE
         }
         if !(part.weight > 0.0 && part.weight <= 1.0e6) {
             return Err(document.field(
-                &way("weight"),
+                &keys("weight"),
                 part.weight,
                 "above 0, at most 1e6",
                 "remove a gauge that is not part of the objective",

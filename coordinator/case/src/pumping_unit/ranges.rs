@@ -120,7 +120,7 @@ fn ropes(case: &CaseFile) -> Vec<Number> {
 
 fn run(case: &CaseFile) -> Vec<Number> {
     let run = &case.run;
-    let (step, radius) = (run.output_step_deg, run.spectral_radius);
+    let step = run.output_step_deg;
     let budget = run.iteration_budget as f64;
     vec![
         ("run.output_step_deg", step, Range(0.01, 30.0, "deg")),
@@ -135,7 +135,6 @@ fn run(case: &CaseFile) -> Vec<Number> {
             run.longest_step_s,
             Range(1.0e-5, 1.0, "s"),
         ),
-        ("run.spectral_radius", radius, Range(0.0, 1.0, "(no unit)")),
         (
             "run.iteration_budget",
             budget,

@@ -6,16 +6,19 @@ pub(super) const FAULTS: &[Spoilt] = &[
     (
         "absent",
         |c| fs::remove_file(c.path(CARD)).unwrap(),
-        &["card_5rpm.csv", "no such file", "`5rpm`"],
+        "Missing",
+        &["card_5rpm.csv", "`5rpm`"],
     ),
     (
         "empty",
         |c| fs::write(c.path(CARD), "").unwrap(),
+        "Damaged",
         &["card_5rpm.csv", "empty"],
     ),
     (
         "header only",
         |c| c.lines(CARD, |at, line| (at == 1).then(|| line.to_owned())),
+        "Damaged",
         &["card_5rpm.csv", "no rows"],
     ),
     (
@@ -29,22 +32,14 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 })
             });
         },
-        &[
-            "card_5rpm.csv",
-            "`polished_rod_load_n` is missing",
-            "turn_deg, load_n",
-        ],
+        "Column",
+        &["card_5rpm.csv", "`polished_rod_load_n`", "turn_deg, load_n"],
     ),
     (
         "not from 0",
         |c| c.lines(CARD, |at, line| (at != 2).then(|| line.to_owned())),
-        &[
-            "card_5rpm.csv",
-            "row 2",
-            "`turn_deg`",
-            "0.5",
-            "counted from bottom dead centre",
-        ],
+        "Cell",
+        &["card_5rpm.csv", "row 2", "`turn_deg`", "0.5"],
     ),
     (
         "uneven",
@@ -57,13 +52,8 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 })
             });
         },
-        &[
-            "card_5rpm.csv",
-            "row 100",
-            "`turn_deg`",
-            "49.1",
-            "equally spaced",
-        ],
+        "Cell",
+        &["card_5rpm.csv", "row 100", "`turn_deg`", "49.1"],
     ),
     (
         "closed at 360",
@@ -76,7 +66,8 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 })
             });
         },
-        &["card_5rpm.csv", "row 722", "360", "remove the last row"],
+        "Cell",
+        &["card_5rpm.csv", "row 722", "360"],
     ),
     (
         "not periodic",
@@ -88,12 +79,14 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 }))
             });
         },
+        "Cell",
         &["card_5rpm.csv", "row 721", "periodic"],
     ),
     (
         "kN",
         |c| c.lines(CARD, |at, line| scaled(at, line, &[1], 1e-3)),
-        &["card_5rpm.csv", "`polished_rod_load_n`", "looks like kN"],
+        "Cell",
+        &["card_5rpm.csv", "`polished_rod_load_n`"],
     ),
     (
         "text",
@@ -106,13 +99,8 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 })
             });
         },
-        &[
-            "card_5rpm.csv",
-            "row 7",
-            "`polished_rod_load_n`",
-            "48 kN",
-            "plain number",
-        ],
+        "Cell",
+        &["card_5rpm.csv", "row 7", "`polished_rod_load_n`", "48 kN"],
     ),
     (
         "negative",
@@ -125,7 +113,8 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 })
             });
         },
-        &["card_5rpm.csv", "row 9", "-5", "cannot push"],
+        "Cell",
+        &["card_5rpm.csv", "row 9", "-5"],
     ),
     (
         "short row",
@@ -134,6 +123,7 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 Some(if at == 9 { "3.5".into() } else { line.into() })
             });
         },
+        "Cell",
         &["card_5rpm.csv", "row 9", "1 cells", "2 cells"],
     ),
 ];

@@ -6,47 +6,46 @@ pub(super) const FAULTS: &[Spoilt] = &[
     (
         "syntax",
         |c| c.replace(TOML, "[rod]", "[rod"),
+        "Toml",
         &["case.toml", "[rod", "| "],
     ),
     (
         "a key in millimetres",
         |c| c.replace(TOML, "radius_m = 1.900", "radius_mm = 1900.0"),
-        &[
-            "case.toml",
-            "unknown field `radius_mm`",
-            "write `radius_m`, and multiply the value by 0.001",
-        ],
+        "Toml",
+        &["case.toml", "`radius_mm`", "`radius_m`", "0.001"],
     ),
     (
         "a sense in other words",
         |c| {
             c.replace(TOML, "sense = \"clockwise\"", "sense = \"anticlockwise\"");
         },
-        &[
-            "case.toml",
-            "unknown variant `anticlockwise`",
-            "did you mean `counter_clockwise`?",
-        ],
+        "Toml",
+        &["case.toml", "`anticlockwise`", "`counter_clockwise`"],
     ),
     (
         "unknown key",
         |c| c.replace(TOML, "mass_kg = 450.0", "mas_kg = 450.0"),
-        &[
-            "case.toml",
-            "unknown field `mas_kg`",
-            "mas_kg = 450.0",
-            "did you mean `mass_kg`?",
-        ],
+        "Toml",
+        &["case.toml", "`mas_kg`", "mas_kg = 450.0", "`mass_kg`"],
     ),
     (
         "unit missing in a key",
         |c| c.replace(TOML, "inertia_kg_m2 = 2.4e4", "inertia = 2.4e4"),
-        &["case.toml", "`inertia`", "did you mean `inertia_kg_m2`?"],
+        "Toml",
+        &["case.toml", "`inertia`", "`inertia_kg_m2`"],
     ),
     (
         "unit missing in a gene",
         |c| c.replace(TOML, "upper = 3.14e12, unit = \"N/m\"", "upper = 3.14e12"),
-        &["case.toml", "missing field `unit`", "N.m/deg"],
+        "Toml",
+        &["case.toml", "`unit`", "N.m/deg"],
+    ),
+    (
+        "an integrator that is gone",
+        |c| c.replace(TOML, "integrator = \"esdirk4\"", "integrator = \"bdf5\""),
+        "Toml",
+        &["case.toml", "`bdf5`", "tr_bdf2", "esdirk4"],
     ),
     (
         "unit unknown",
@@ -57,11 +56,8 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 "upper = 3.14e12, unit = \"N/mm\"",
             );
         },
-        &[
-            "case.toml",
-            "unknown variant `N/mm`",
-            "write `N/m`, and multiply the values by 1000",
-        ],
+        "Toml",
+        &["case.toml", "`N/mm`", "`N/m`", "1000"],
     ),
     (
         "a preload beyond any rope",
@@ -72,6 +68,7 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 "preload_n = 1.0e9\nends = \"half_pitch\"",
             );
         },
+        "Field",
         &[
             "case.toml",
             "`ropes.preload_n` = 1000000000",
@@ -81,25 +78,25 @@ pub(super) const FAULTS: &[Spoilt] = &[
     (
         "an effect's value without unit",
         |c| c.effect("parameters = { moment = { value = 1500.0 } }"),
-        &["case.toml", "missing field `unit`"],
+        "Toml",
+        &["case.toml", "`unit`"],
     ),
     (
         "an effect's unit unknown",
         |c| c.effect("parameters = { moment = { value = 1.5, unit = \"kN.m\" } }"),
+        "Field",
         &[
             "case.toml",
             "`effects[0].parameters.moment.unit` = \"kN.m\"",
-            "write `N.m`, and multiply the values by 1000",
+            "`N.m`",
+            "1000",
         ],
     ),
     (
         "an effect's value not finite",
         |c| c.effect("parameters = { moment = { value = inf, unit = \"N.m\" } }"),
-        &[
-            "case.toml",
-            "`effects[0].parameters.moment.value` = inf",
-            "a finite number of N.m",
-        ],
+        "Field",
+        &["case.toml", "`effects[0].parameters.moment.value` = inf"],
     ),
     (
         "an effect's interval beside its value",
@@ -108,11 +105,8 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 "parameters = { moment = { value = 9.0, unit = \"N.m\", ci95 = [1.0, 2.0] } }",
             );
         },
-        &[
-            "case.toml",
-            "`effects[0].parameters.moment.ci95` = [1, 2]",
-            "two finite numbers around the value, 9",
-        ],
+        "Field",
+        &["case.toml", "`effects[0].parameters.moment.ci95` = [1, 2]"],
     ),
     (
         "an effect searched beside its value",
@@ -121,11 +115,10 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 "parameters = { moment = { value = 9.0, unit = \"N.m\", search = [10.0, 20.0] } }",
             );
         },
+        "Field",
         &[
             "case.toml",
             "`effects[0].parameters.moment.search` = [10, 20]",
-            "two different finite numbers around the value, 9",
-            "write the lower bound first, or leave search out",
         ],
     ),
     (
@@ -135,6 +128,7 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 "parameters = { moment = { value = 9.0, unit = \"N.m\", search = [20, -1] } }",
             );
         },
+        "Field",
         &[
             "case.toml",
             "`effects[0].parameters.moment.search` = [20, -1]",
@@ -147,10 +141,10 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 "parameters = { moment = { value = 9.0, unit = \"N.m\", search = [0, inf] } }",
             );
         },
+        "Field",
         &[
             "case.toml",
             "`effects[0].parameters.moment.search` = [0, inf]",
-            "two different finite numbers",
         ],
     ),
     (
@@ -158,6 +152,7 @@ pub(super) const FAULTS: &[Spoilt] = &[
         |c| {
             c.effect("parameters = { moment = { value = 9.0, unit = \"N.m\", search = [9, 9] } }");
         },
+        "Field",
         &[
             "case.toml",
             "`effects[0].parameters.moment.search` = [9, 9]",
@@ -166,12 +161,14 @@ pub(super) const FAULTS: &[Spoilt] = &[
     (
         "an effect twice",
         |c| c.effect("\n[[effects]]\nid = \"pivot_friction\""),
-        &["case.toml", "`effects[1].id`", "duplicate effect"],
+        "Field",
+        &["case.toml", "`effects[1].id`"],
     ),
     (
         "an effect's key unknown",
         |c| c.effect("parametres = {}"),
-        &["case.toml", "did you mean `parameters`?"],
+        "Toml",
+        &["case.toml", "`parameters`"],
     ),
     (
         "unit of another quantity",
@@ -182,34 +179,29 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 "upper = 1.10e6, unit = \"N/m\"",
             );
         },
-        &[
-            "case.toml",
-            "`genes.kb4.unit` = \"N/m\"",
-            "allowed: N.m/rad or N.m/deg for kb4",
-        ],
+        "Field",
+        &["case.toml", "`genes.kb4.unit` = \"N/m\""],
     ),
     (
         "missing key",
         |c| c.replace(TOML, "speed_rpm = 5.0", ""),
-        &["case.toml", "missing field `speed_rpm`", "add `speed_rpm`"],
+        "Toml",
+        &["case.toml", "add `speed_rpm`"],
     ),
     (
         "text for a number",
         |c| c.replace(TOML, "mass_kg = 450.0", "mass_kg = \"450\""),
-        &[
-            "case.toml",
-            "invalid type",
-            "mass_kg = \"450\"",
-            "numbers without quotes",
-        ],
+        "Toml",
+        &["case.toml", "mass_kg = \"450\""],
     ),
     (
         "NaN",
         |c| c.replace(TOML, "mass_kg = 450.0", "mass_kg = nan"),
+        "Field",
         &[
             "case.toml",
             "`rod.mass_kg` = NaN",
-            "allowed: 0.001 to 1e6 kg",
+            "0.001 to 1e6 kg",
             "mass_kg = nan",
             "^^^",
         ],
@@ -217,34 +209,35 @@ pub(super) const FAULTS: &[Spoilt] = &[
     (
         "infinity",
         |c| c.replace(TOML, "inertia_kg_m2 = 385.0", "inertia_kg_m2 = inf"),
+        "Field",
         &["case.toml", "`rod.inertia_kg_m2` = inf", "allowed: "],
     ),
     (
         "infinite gene",
         |c| c.replace(TOML, "upper = 3.14e12", "upper = inf"),
+        "Field",
         &["case.toml", "`genes.kb1.upper` = inf", "allowed: above 0"],
     ),
     (
         "negative mass",
         |c| c.replace(TOML, "mass_kg = 175.0", "mass_kg = -175.0"),
+        "Field",
         &[
             "case.toml",
             "`suspension.mass_kg` = -175",
-            "allowed: 0.001 to 1e6 kg",
+            "0.001 to 1e6 kg",
         ],
     ),
     (
         "zero radius",
         |c| c.replace(TOML, "radius_m = 1.900", "radius_m = 0.0"),
-        &[
-            "case.toml",
-            "`back_head.radius_m` = 0",
-            "allowed: 0.001 to 100 m",
-        ],
+        "Field",
+        &["case.toml", "`back_head.radius_m` = 0", "0.001 to 100 m"],
     ),
     (
         "bounds exclude the recommended value",
         |c| c.replace(TOML, "recommended = 3.14e8", "recommended = 3.14e13"),
+        "Field",
         &["case.toml", "`genes.kb1.recommended`", "exclude"],
     ),
     (
@@ -256,7 +249,8 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 "upper = 3.14e12, prior = { value = 3e8, factor = 1.0 }",
             );
         },
-        &["case.toml", "`genes.kb1.prior`", "a factor above 1"],
+        "Field",
+        &["case.toml", "`genes.kb1.prior`"],
     ),
     (
         "prior below zero",
@@ -267,7 +261,8 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 "upper = 3.14e12, prior = [-1.0, 3e8]",
             );
         },
-        &["case.toml", "`genes.kb1.prior`", "positive and ascending"],
+        "Field",
+        &["case.toml", "`genes.kb1.prior`"],
     ),
     (
         "bounds exchanged",
@@ -278,43 +273,41 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 "lower = 3.14e12, upper = 3.14e4",
             );
         },
-        &["case.toml", "`genes.kb1.lower`", "below upper"],
+        "Field",
+        &["case.toml", "`genes.kb1.lower`"],
     ),
     (
         "duplicate condition",
         |c| c.replace(TOML, "name = \"4rpm\"", "name = \"5rpm\""),
-        &[
-            "case.toml",
-            "`conditions[1].name` = \"5rpm\"",
-            "duplicate condition",
-        ],
+        "Field",
+        &["case.toml", "`conditions[1].name` = \"5rpm\""],
     ),
     (
         "back rope too short",
         |c| c.replace(TOML, "back_cylinders = 72", "back_cylinders = 50"),
+        "Field",
         &[
             "case.toml",
-            "`ropes.back_cylinders` = 50 (2.500 m of rope)",
+            "`ropes.back_cylinders` = 50",
+            "2.500 m",
             "allowed: ",
         ],
     ),
     (
         "crank too long",
         |c| c.replace(TOML, "radius_m = 1.0973", "radius_m = 2.0973"),
+        "Field",
         &[
             "case.toml",
             "`ropes.back_cylinders` = 72",
-            "or correct crank.radius_m = 2.0973, if a swing of",
+            "radius_m = 2.0973",
         ],
     ),
     (
         "crank beyond the rod",
         |c| c.replace(TOML, "radius_m = 1.0973", "radius_m = 4.0"),
-        &[
-            "case.toml",
-            "the loop of crank, rod, back rope and back head is open at a pin angle of",
-            "crank.radius_m = 4",
-        ],
+        "Contradiction",
+        &["case.toml", "crank.radius_m = 4"],
     ),
     (
         "formula for a damping",
@@ -325,11 +318,8 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 "cb1  = { recommended = \"eq3\",",
             );
         },
-        &[
-            "case.toml",
-            "`genes.cb1.recommended` = \"eq3\"",
-            "\"eq3\" for kb1, kb23, kb4 and kb56",
-        ],
+        "Field",
+        &["case.toml", "`genes.cb1.recommended` = \"eq3\"", "23", "56"],
     ),
     (
         "formula misspelt",
@@ -340,11 +330,8 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 "kc   = { recommended = \"herz\",",
             );
         },
-        &[
-            "case.toml",
-            "unknown variant `herz`",
-            "did you mean `hertz`?",
-        ],
+        "Toml",
+        &["case.toml", "`herz`", "`hertz`"],
     ),
     (
         "more harmonics than the card has",
@@ -355,11 +342,8 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 "smoothing = { harmonics = 4000 }",
             );
         },
-        &[
-            "case.toml",
-            "`conditions[0].smoothing` = { harmonics = 4000 }",
-            "a card of",
-        ],
+        "Field",
+        &["case.toml", "`conditions[0].smoothing` = {", "4000"],
     ),
     (
         "back rope all on the head",
@@ -367,24 +351,19 @@ pub(super) const FAULTS: &[Spoilt] = &[
             c.replace(TOML, "back_cylinders = 72", "back_cylinders = 56");
             c.replace(TOML, "length_m = 2.876", "length_m = 3.676");
         },
-        &[
-            "case.toml",
-            "`ropes.back_cylinders` = 56",
-            "shorter than the path",
-        ],
+        "Field",
+        &["case.toml", "`ropes.back_cylinders` = 56"],
     ),
     (
         "front rope too short",
         |c| c.replace(TOML, "front_cylinders = 114", "front_cylinders = 80"),
-        &[
-            "case.toml",
-            "`ropes.front_cylinders` = 80 (4.000 m of rope)",
-            "shorter than the path",
-        ],
+        "Field",
+        &["case.toml", "`ropes.front_cylinders` = 80", "4.000 m"],
     ),
     (
         "front anchor within the swing",
         |c| c.replace(TOML, "rope_anchor_deg = 36.6", "rope_anchor_deg = 20.0"),
+        "Field",
         &[
             "case.toml",
             "`front_head.rope_anchor_deg` = 20",
@@ -397,6 +376,7 @@ pub(super) const FAULTS: &[Spoilt] = &[
             c.replace(TOML, "rope_anchor_deg = 125.0", "rope_anchor_deg = 110.0");
             c.replace(TOML, "length_m = 2.876", "length_m = 3.373");
         },
+        "Field",
         &[
             "case.toml",
             "`back_head.rope_anchor_deg` = 110",
@@ -406,7 +386,8 @@ pub(super) const FAULTS: &[Spoilt] = &[
     (
         "step that does not divide 360",
         |c| c.replace(TOML, "output_step_deg = 0.5", "output_step_deg = 0.7"),
-        &["case.toml", "`run.output_step_deg` = 0.7", "divides 360"],
+        "Field",
+        &["case.toml", "`run.output_step_deg` = 0.7", "360"],
     ),
     (
         "smoothing of nothing",
@@ -417,6 +398,7 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 "smoothing = { harmonics = 0 }",
             );
         },
+        "Field",
         &[
             "case.toml",
             "`conditions[0].smoothing`",
@@ -433,64 +415,56 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 "smoothing = { harmonic = 14 }",
             );
         },
-        &[
-            "case.toml",
-            "unknown variant `harmonic`",
-            "did you mean `harmonics`?",
-        ],
+        "Toml",
+        &["case.toml", "`harmonic`", "`harmonics`"],
     ),
     (
         "speed of the motor",
         |c| c.replace(TOML, "speed_rpm = 5.0", "speed_rpm = 730.0"),
-        &[
-            "case.toml",
-            "`conditions[0].speed_rpm` = 730",
-            "0.1 to 60",
-            "not the motor's",
-        ],
+        "Field",
+        &["case.toml", "`conditions[0].speed_rpm` = 730", "0.1 to 60"],
     ),
     (
         "negative weight",
         |c| c.replace(TOML, "gauge = 3, weight = 1.0", "gauge = 3, weight = -1.0"),
+        "Field",
         &["case.toml", "`objective.gauges[1].weight` = -1", "above 0"],
     ),
     (
         "more modes than there are",
         |c| c.replace(TOML, "modes = 6", "modes = 13"),
+        "Field",
         &["case.toml", "`run.modes` = 13", "0 to 12"],
     ),
     (
         "no objective beside a record",
         |c| c.cut(TOML, "[objective]", "[run]"),
+        "Field",
         &[
             "case.toml",
             "`objective` = absent",
-            "condition `5rpm` has a record_file",
+            "`5rpm`",
+            "record_file",
             "add [objective]",
         ],
     ),
     (
         "a coefficient missing",
         |c| c.replace(TOML, "kb4  = {", "# kb4  = {"),
-        &["case.toml", "without `kb4`", "add `kb4 = {"],
+        "Field",
+        &["case.toml", "`kb4`", "add `kb4 = {"],
     ),
     (
         "a budget too small",
         |c| c.replace(TOML, "modes = 6", "modes = 6\niteration_budget = 10"),
-        &[
-            "case.toml",
-            "`run.iteration_budget` = 10",
-            "100 to 1e9 iterations",
-        ],
+        "Field",
+        &["case.toml", "`run.iteration_budget` = 10", "100 to 1e9"],
     ),
     (
         "objective without condition",
         |c| c.replace(TOML, "condition = \"5rpm\"", "condition = \"5 rpm\""),
-        &[
-            "case.toml",
-            "`objective.condition` = \"5 rpm\"",
-            "did you mean `5rpm`?",
-        ],
+        "Field",
+        &["case.toml", "`objective.condition` = \"5 rpm\"", "`5rpm`"],
     ),
     (
         "a condition twice in the objective",
@@ -501,11 +475,8 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 "condition = [\"5rpm\", \"5rpm\"]",
             );
         },
-        &[
-            "case.toml",
-            "`objective.condition` = \"5rpm\"",
-            "each condition once",
-        ],
+        "Field",
+        &["case.toml", "`objective.condition` = \"5rpm\""],
     ),
     (
         "a weight of the first condition",
@@ -513,7 +484,8 @@ pub(super) const FAULTS: &[Spoilt] = &[
             let weighted = "condition = [{ name = \"5rpm\", weight = 2.0 }, \"4rpm\"]";
             c.replace(TOML, "condition = \"5rpm\"", weighted);
         },
-        &["case.toml", "without a weight", "relative to the first"],
+        "Field",
+        &["case.toml", "without a weight"],
     ),
     (
         "a condition without weight in the objective",
@@ -521,6 +493,7 @@ pub(super) const FAULTS: &[Spoilt] = &[
             let weighted = "condition = [\"5rpm\", { name = \"4rpm\", weight = 0.0 }]";
             c.replace(TOML, "condition = \"5rpm\"", weighted);
         },
+        "Field",
         &[
             "case.toml",
             "`objective.condition[1].weight` = 0",
@@ -530,7 +503,8 @@ pub(super) const FAULTS: &[Spoilt] = &[
     (
         "no condition in the objective",
         |c| c.replace(TOML, "condition = \"5rpm\"", "condition = []"),
-        &["case.toml", "`objective.condition` = []", "at least one"],
+        "Field",
+        &["case.toml", "`objective.condition` = []"],
     ),
     (
         "a second condition of the objective without a record",
@@ -542,25 +516,29 @@ pub(super) const FAULTS: &[Spoilt] = &[
             );
             c.replace(TOML, "record_file = \"measured/test_4rpm.csv.gz\"", "");
         },
+        "Field",
         &[
             "case.toml",
             "`objective.condition` = \"4rpm\"",
-            "a condition with a record_file",
+            "record_file",
         ],
     ),
     (
         "gauge twice",
         |c| c.replace(TOML, "{ gauge = 3,", "{ gauge = 1,"),
-        &["case.toml", "`objective.gauges[1].gauge` = 1", "each once"],
+        "Field",
+        &["case.toml", "`objective.gauges[1].gauge` = 1"],
     ),
     (
         "empty",
         |c| fs::write(c.path(TOML), "\n").unwrap(),
+        "Damaged",
         &["case.toml", "empty"],
     ),
     (
         "absent",
         |c| fs::remove_file(c.path(TOML)).unwrap(),
-        &["case.toml", "no such file", "horsehead case new"],
+        "Missing",
+        &["case.toml"],
     ),
 ];

@@ -6,16 +6,19 @@ pub(super) const FAULTS: &[Spoilt] = &[
     (
         "absent",
         |c| fs::remove_file(c.path(RECORD)).unwrap(),
-        &["test_5rpm.csv.gz", "no such file"],
+        "Missing",
+        &["test_5rpm.csv.gz"],
     ),
     (
         "sheet absent",
         |c| fs::remove_file(c.path(SHEET)).unwrap(),
-        &["test_5rpm.toml", "data sheet"],
+        "Missing",
+        &["test_5rpm.toml"],
     ),
     (
         "empty",
         |c| fs::write(c.path(RECORD), "").unwrap(),
+        "Damaged",
         &["test_5rpm.csv.gz", "empty"],
     ),
     (
@@ -24,12 +27,14 @@ pub(super) const FAULTS: &[Spoilt] = &[
             let bytes = fs::read(c.path(RECORD)).unwrap();
             fs::write(c.path(RECORD), &bytes[..bytes.len() / 2]).unwrap();
         },
+        "Damaged",
         &["test_5rpm.csv.gz", "truncated", "gzip -t"],
     ),
     (
         "not gzip",
         |c| fs::write(c.path(RECORD), "time_s,crank_deg\n").unwrap(),
-        &["test_5rpm.csv.gz", "not gzip", "name it .csv"],
+        "Damaged",
+        &["test_5rpm.csv.gz"],
     ),
     (
         "flipped bit",
@@ -39,6 +44,7 @@ pub(super) const FAULTS: &[Spoilt] = &[
             bytes[middle] ^= 4;
             fs::write(c.path(RECORD), bytes).unwrap();
         },
+        "Damaged",
         &["test_5rpm.csv.gz", "damaged"],
     ),
     (
@@ -50,6 +56,7 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 "sense = \"counter_clockwise\"",
             );
         },
+        "Contradiction",
         &[
             "test_5rpm.toml",
             "`crank.sense` is counter_clockwise",
@@ -65,11 +72,11 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 "sense = \"the crank turns clockwise\"",
             );
         },
+        "Field",
         &[
             "test_5rpm.toml",
             "`crank.sense` = \"the crank turns clockwise\"",
-            "\"clockwise\" or \"counter_clockwise\"",
-            "seen with the well on the right",
+            "counter_clockwise",
         ],
     ),
     (
@@ -81,20 +88,22 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 "sense = \"Counter-Clockwise\"",
             );
         },
+        "Field",
         &[
             "test_5rpm.toml",
             "`crank.sense` = \"Counter-Clockwise\"",
-            "\"clockwise\" or \"counter_clockwise\"",
+            "counter_clockwise",
         ],
     ),
     (
         "tolerance misspelt",
         |c| c.replace(SHEET, "gauge_factor = 0.005", "gauge_factr = 0.005"),
+        "Toml",
         &[
             "test_5rpm.toml",
-            "unknown field `gauge_factr`",
+            "`gauge_factr`",
             "gauge_factr = 0.005",
-            "did you mean `gauge_factor`?",
+            "`gauge_factor`",
         ],
     ),
     (
@@ -102,15 +111,18 @@ pub(super) const FAULTS: &[Spoilt] = &[
         |c| {
             c.replace(SHEET, "gauge_factor = 0.005", "thermometer_kelvin = 0.005");
         },
+        "Toml",
         &[
             "test_5rpm.toml",
-            "unknown field `thermometer_kelvin`",
-            "remove it; known here: gauge_factor, index_deg",
+            "`thermometer_kelvin`",
+            "gauge_factor",
+            "index_deg",
         ],
     ),
     (
         "negative tolerance",
         |c| c.replace(SHEET, "load_cell = 0.003", "load_cell = -0.003"),
+        "Field",
         &[
             "test_5rpm.toml",
             "`tolerance.load_cell` = -0.003",
@@ -120,11 +132,13 @@ pub(super) const FAULTS: &[Spoilt] = &[
     (
         "infinite tolerance",
         |c| c.replace(SHEET, "balance_nm = 200 ", "balance_nm = inf "),
+        "Field",
         &["test_5rpm.toml", "`tolerance.balance_nm` = inf", "finite"],
     ),
     (
         "tolerance in words",
         |c| c.replace(SHEET, "torque = 0.005", "torque = \"good\""),
+        "Toml",
         &["test_5rpm.toml", "torque = \"good\"", "expected a number"],
     ),
     (
@@ -138,11 +152,8 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 })
             });
         },
-        &[
-            "test_5rpm.csv.gz",
-            "`stress_3_mpa` is missing",
-            "stress3_mpa",
-        ],
+        "Column",
+        &["test_5rpm.csv.gz", "`stress_3_mpa`", "stress3_mpa"],
     ),
     (
         "column of the objective called otherwise",
@@ -155,10 +166,14 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 })
             });
         },
+        "Field",
         &[
             "case.toml: `objective.gauges[0].gauge` = 1",
-            "a channel that the record has: gauge_2, gauge_3, gauge_4",
-            "name its column stress_1_mpa (not used there: sigma_a)",
+            "gauge_2",
+            "gauge_3",
+            "gauge_4",
+            "stress_1_mpa",
+            "sigma_a",
             "optional = true",
         ],
     ),
@@ -178,11 +193,14 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 })
             });
         },
+        "Field",
         &[
             "case.toml: `objective.torque_weight_mpa2_per_kn2_m2` = 0.5",
-            "a channel that the record has: gauge_1, gauge_2, gauge_3, gauge_4, position",
-            "name its column crank_torque_nm",
-            "or remove the key",
+            "gauge_1",
+            "gauge_2",
+            "gauge_3",
+            "gauge_4",
+            "crank_torque_nm",
         ],
     ),
     (
@@ -194,6 +212,7 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 "position_weight_mpa2_per_m2 = -1.0\noffset = \"free\"",
             );
         },
+        "Field",
         &[
             "case.toml: `objective.position_weight_mpa2_per_m2` = -1",
             "above 0",
@@ -210,11 +229,8 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 })
             });
         },
-        &[
-            "test_5rpm.csv.gz",
-            "row 9",
-            "a decimal comma cuts a cell in two",
-        ],
+        "Cell",
+        &["test_5rpm.csv.gz", "row 9"],
     ),
     (
         "text",
@@ -227,6 +243,7 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 })
             });
         },
+        "Cell",
         &["test_5rpm.csv.gz", "row 77", "`stress_3_mpa`", "overload"],
     ),
     (
@@ -240,13 +257,8 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 })
             });
         },
-        &[
-            "test_5rpm.csv.gz",
-            "row 78",
-            "`stress_1_mpa`",
-            "NaN",
-            "lost samples are allowed",
-        ],
+        "Cell",
+        &["test_5rpm.csv.gz", "row 78", "`stress_1_mpa`", "NaN"],
     ),
     (
         "empty cell",
@@ -259,12 +271,8 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 })
             });
         },
-        &[
-            "test_5rpm.csv.gz",
-            "row 78",
-            "`stress_1_mpa`",
-            "empty cells",
-        ],
+        "Cell",
+        &["test_5rpm.csv.gz", "row 78", "`stress_1_mpa`"],
     ),
     (
         "duplicated time",
@@ -277,7 +285,8 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 })
             });
         },
-        &["test_5rpm.csv.gz", "row 501", "`time_s`", "same time again"],
+        "Cell",
+        &["test_5rpm.csv.gz", "row 501", "`time_s`"],
     ),
     (
         "time backwards",
@@ -290,12 +299,14 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 })
             });
         },
+        "Cell",
         &["test_5rpm.csv.gz", "row 501", "`time_s`", "backwards"],
     ),
     (
         "time in milliseconds",
         |c| c.lines(RECORD, |at, line| scaled(at, line, &[0], 1e3)),
-        &["test_5rpm.csv.gz", "speed", "5"],
+        "Contradiction",
+        &["test_5rpm.csv.gz", "speed"],
     ),
     (
         "crank reversed",
@@ -308,21 +319,19 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 }))
             });
         },
-        &[
-            "test_5rpm.csv.gz",
-            "row 4",
-            "`crank_deg`",
-            "reverse its sense",
-        ],
+        "Cell",
+        &["test_5rpm.csv.gz", "row 4", "`crank_deg`"],
     ),
     (
         "crank in radians",
         |c| c.lines(RECORD, |at, line| scaled(at, line, &[1], 0.0174533)),
+        "Cell",
         &["test_5rpm.csv.gz", "`crank_deg`"],
     ),
     (
         "sampling contradicts the sheet",
         |c| c.replace(SHEET, "sample_rate_hz = 100.0", "sample_rate_hz = 200.0"),
+        "Contradiction",
         &[
             "test_5rpm.csv.gz",
             "100.00 Hz",
@@ -333,6 +342,7 @@ pub(super) const FAULTS: &[Spoilt] = &[
     (
         "rows contradict the sheet",
         |c| c.lines(RECORD, |at, line| (at < 4000).then(|| line.to_owned())),
+        "Contradiction",
         &["test_5rpm.csv.gz", "3998", "samples_recorded = 5970"],
     ),
     (
@@ -344,6 +354,7 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 "strokes_per_minute = 4.0",
             );
         },
+        "Contradiction",
         &[
             "test_5rpm.toml",
             "`strokes_per_minute`",
@@ -356,6 +367,7 @@ pub(super) const FAULTS: &[Spoilt] = &[
         |c| {
             fs::copy(c.path("measured/test_4rpm.csv.gz"), c.path(RECORD)).unwrap();
         },
+        "Contradiction",
         &["test_5rpm.csv.gz", "4.001 /min", "speed_rpm = 5"],
     ),
     (
@@ -364,7 +376,8 @@ pub(super) const FAULTS: &[Spoilt] = &[
             c.lines(RECORD, |at, line| (at < 900).then(|| line.to_owned()));
             c.replace(SHEET, "samples_recorded = 5970", "");
         },
-        &["test_5rpm.csv.gz", "no whole revolution", "index pulse"],
+        "Damaged",
+        &["test_5rpm.csv.gz"],
     ),
     (
         "gap on every cycle",
@@ -378,27 +391,20 @@ pub(super) const FAULTS: &[Spoilt] = &[
             });
             c.replace(SHEET, "samples_recorded = 5970", "");
         },
-        &[
-            "test_5rpm.csv.gz",
-            "`crank_deg`",
-            "near 100",
-            "on every cycle",
-        ],
+        "Damaged",
+        &["test_5rpm.csv.gz", "`crank_deg`", "near 100"],
     ),
     (
         "Pa",
         |c| c.lines(RECORD, |at, line| scaled(at, line, &[2, 3, 4, 5], 1e6)),
-        &[
-            "test_5rpm.csv.gz",
-            "`stress_1_mpa`",
-            "looks like Pa",
-            "2000 MPa",
-        ],
+        "Cell",
+        &["test_5rpm.csv.gz", "`stress_1_mpa`", "2000 MPa"],
     ),
     (
         "GPa",
         |c| c.lines(RECORD, |at, line| scaled(at, line, &[2, 3, 4, 5], 1e-3)),
-        &["test_5rpm.csv.gz", "`stress_1_mpa`", "looks like GPa"],
+        "Cell",
+        &["test_5rpm.csv.gz", "`stress_1_mpa`"],
     ),
     (
         "spike",
@@ -411,21 +417,25 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 })
             });
         },
+        "Cell",
         &["test_5rpm.csv.gz", "row 60", "`stress_2_mpa`", "spike"],
     ),
     (
         "dead gauge",
         |c| c.lines(RECORD, |at, line| scaled(at, line, &[5], 0.0)),
+        "Cell",
         &["test_5rpm.csv.gz", "`stress_4_mpa`", "dead"],
     ),
     (
         "sheet's unit",
         |c| c.replace(SHEET, "unit = \"MPa\"", "unit = \"Pa\""),
+        "Field",
         &["test_5rpm.toml", "`gauges.unit` = \"Pa\"", "\"MPa\""],
     ),
     (
         "sheet malformed",
         |c| c.replace(SHEET, "sample_rate_hz = 100.0", "sample_rate_hz = fast"),
+        "Toml",
         &["test_5rpm.toml", "sample_rate_hz = fast"],
     ),
 ];

@@ -139,16 +139,28 @@ pub(super) const MODES: &str = "back_head/back_head_modes.json";
 pub(super) const INFLUENCE: &str = "back_head/back_head_influence.csv";
 pub(super) const MESH: &str = "back_head/back_head.msh";
 
-/// Fault of a case: name, function that introduces it, and texts that the error message must contain.
-pub(super) type Spoilt = (&'static str, fn(&Copy), &'static [&'static str]);
+/// Fault of a case: name, function that introduces it, variant of [`CaseError`] that it gives, and what the message must
+/// contain: file, field, values, names. Sentences are not compared.
+pub(super) type Spoilt = (
+    &'static str,
+    fn(&Copy),
+    &'static str,
+    &'static [&'static str],
+);
 
 /// Checks that every fault of a table is named, in copies of the case that `copy` makes.
 pub(super) fn assert_each_is_named(table: &[Spoilt], copy: fn() -> Copy) {
     let mut wrong = Vec::new();
-    for (name, spoil, expected) in table {
+    for (name, spoil, kind, expected) in table {
         let copy = copy();
         spoil(&copy);
-        let message = copy.error().to_string();
+        let error = copy.error();
+        let debug = format!("{error:?}");
+        let found = debug.split([' ', '(']).next().unwrap_or_default();
+        if found != *kind {
+            wrong.push(format!("{name}: a {found}, not a {kind}: {error}"));
+        }
+        let message = error.to_string();
         let help = message.lines().last().unwrap_or_default();
         if help.len() < 15 || !help.starts_with("help: ") {
             wrong.push(format!("{name}: no help in\n{message}"));

@@ -159,10 +159,12 @@ async fn first_fit<L: Laboratory>(
     };
     let nuisances = vec![0.0; model.active_nuisances().count()];
     let starts = if let Some(x) = &inputs.start {
-        vec![Point {
-            model,
+        let point = |x: &Vec<f64>| Point {
+            model: model.clone(),
             x: [&x[..], &nuisances].concat(),
-        }]
+        };
+        let all = std::iter::once(x).chain(inputs.families.iter().flatten());
+        all.map(point).collect()
     } else {
         let search = (inputs.global_search, inputs.seed);
         global_start::global_starts(experiments, &model, &nuisances, search).await?
@@ -172,6 +174,7 @@ async fn first_fit<L: Laboratory>(
         return Ok(None);
     };
     if first.misfit() > DOUBTFUL
+        && inputs.families.is_none()
         && experiments.lab.has_budget(Stage::Basin)
         && let Some(other) = narrow_minimum::scan(experiments, &first).await?
     {

@@ -1,7 +1,6 @@
 //! Baseline of all tests: noise, global search for the narrow minimum, recalibration, and size of the
 //! discretisation error. Candidate effects are not part of this module.
 pub(crate) mod base;
-pub mod budget;
 pub mod discretisation_check;
 pub(crate) mod establish;
 pub mod global_start;

@@ -12,7 +12,7 @@ use crate::model::fit::Fit;
 use crate::model::unknowns::Point;
 use search::least_squares::LeastSquaresSettings;
 use search::strategy::levenberg::SpacingRule;
-use search::strategy::quick::{RACE, coarse_scan};
+use search::strategy::staged::{RACE, coarse_scan};
 
 /// Maximum `chi^2` of a fit in another narrow minimum, as a share of that of the first fit, for which it
 /// counts as better.

@@ -156,7 +156,10 @@ async fn settled<L: Laboratory>(
     let firm = matches!(ground, TestValidity::Valid | TestValidity::NoiseStated);
     let mut doubt = validate(session, &mut answer, shown, diagnosis).await?;
     for starts in Starts::ALL {
-        if !firm || (doubt.is_none() && diagnosis.remainder.beyond.is_empty()) {
+        let holds = doubt.is_none()
+            && diagnosis.remainder.beyond.is_empty()
+            && implausible(base, &answer, diagnosis).is_none();
+        if !firm || holds {
             break;
         }
         let other = fit_from_other_starts(session, &answer, &diagnosis.rounds, starts).await?;

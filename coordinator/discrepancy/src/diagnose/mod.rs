@@ -26,13 +26,14 @@ pub use crate::inputs::Inputs;
 pub use diagnosis::Diagnosis;
 pub use remainder::{Left, Remainder};
 
-use crate::baseline::budget::Budgeted;
-use crate::baseline::establish::establish;
-use crate::baseline::session::Session;
-use crate::laboratory::{Laboratory, Stage};
-use crate::localisation::summary;
-use crate::thresholds::MAX_PREDICTED_DECREASE;
-use crate::validation::compare::validation_records;
+use crate::{
+    baseline::{establish::establish, session::Session},
+    budget::Budgeted,
+    laboratory::{Laboratory, Stage},
+    localisation::summary,
+    thresholds::MAX_PREDICTED_DECREASE,
+    validation::compare::validation_records,
+};
 use conclude::conclude;
 use diagnosis::WorkingDiagnosis;
 use rounds::rounds;

@@ -1,5 +1,5 @@
-//! Repetition of the fit of an answer that does not hold or needs instruments that are far off, from other
-//! points: it may lie in a wrong minimum.
+//! Repetition of the fit of an answer that does not hold, has sizes that cannot be named, or needs instruments
+//! that are far off, from other points: it may lie in a wrong minimum.
 use crate::baseline::global_start::global_starts;
 use crate::baseline::session::Session;
 use crate::hypothesis::round::WorkingRound;

@@ -8,6 +8,7 @@ use crate::baseline::recheck::check_against_finer;
 use crate::baseline::session::Session;
 use crate::diagnose::diagnosis::WorkingDiagnosis;
 use crate::hypothesis::candidate::WorkingCandidate;
+use crate::hypothesis::refit::{Refitted, may_compete};
 use crate::hypothesis::round::WorkingRound;
 use crate::laboratory::{Laboratory, Stage};
 use crate::linear::evidence::ambiguity_set;
@@ -160,8 +161,9 @@ async fn swapped<L: Laboratory>(
         rivals.sort_by(|a, b| alike(of(&b.id)).total_cmp(&alike(of(&a.id))));
         rivals.truncate(ALIKE);
     } else {
-        let gain = |log_evidence: f64| log_evidence - round.null_evidence;
-        rivals.retain(|own| gain(own.log_evidence) > 0.0);
+        let gain = |own: &Refitted<Fit>| own.log_evidence - round.null_evidence;
+        let best = round.refits.iter().map(gain).fold(0.0, f64::max);
+        rivals.retain(|own| gain(own) > 0.0 && may_compete(gain(own), best));
     }
     let first =
         answer.model.added.len() == 1 && rivals.iter().all(|own| own.fit.model.added.len() == 1);

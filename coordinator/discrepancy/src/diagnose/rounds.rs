@@ -1,7 +1,7 @@
 //! Rounds of hypothesis tests: each tests all effects, refits the likeliest, compares them with generic
 //! forces, and accepts the best or stops; afterwards unnecessary effects are removed.
-use crate::baseline::discretisation_check;
 use crate::baseline::session::Session;
+use crate::baseline::{discretisation_check, recalibrate};
 use crate::diagnose::acceptance::accept;
 use crate::diagnose::backward_elimination::prune;
 use crate::diagnose::diagnosis::WorkingDiagnosis;
@@ -10,7 +10,7 @@ use crate::estimate::absorbed::absorbed;
 use crate::estimate::experiment_design;
 use crate::estimate::limit::limits;
 use crate::hypothesis::candidate::{self, WorkingCandidate};
-use crate::hypothesis::refit::{Refitted, refit};
+use crate::hypothesis::refit::{Refitted, may_compete, refit};
 use crate::hypothesis::round::WorkingRound;
 use crate::hypothesis::signature::examine;
 use crate::hypothesis::valley_search;
@@ -20,6 +20,7 @@ use crate::validation::compare::ValidationRecord;
 use crate::validation::gap_closure::gap;
 use protocol::announce::EffectDescriptor;
 use record::Record;
+use search::least_squares::Termination;
 
 /// Number of rounds of a diagnosis in which the narrow minimum of the misfit is searched.
 const LOOKS: usize = 2;
@@ -103,9 +104,22 @@ async fn forward_selection<L: Laboratory>(
         diagnosis.rounds.push(round);
         let Some(next) = next else { break };
         diagnosis.rounds.extend(next.further_rounds);
-        current = next.fit;
+        current = converged(session, next.fit).await?;
     }
     Ok(current)
+}
+
+/// Fits a model to convergence whose fit ended before: tests of further effects would respond to what it left, and
+/// every refit would make up for it.
+async fn converged<L: Laboratory>(session: &mut Session<'_, L>, fit: Fit) -> Result<Fit, L::Error> {
+    if fit.search.ended() != Some(Termination::Iterations) || !session.lab.has_budget(Stage::Refit)
+    {
+        return Ok(fit);
+    }
+    let mut experiments = session.experiments(Stage::Refit);
+    let further = recalibrate::converge(&mut experiments, fit.point()).await?;
+    let better = further.filter(|further| further.chi_squared() < fit.chi_squared());
+    Ok(better.unwrap_or(fit))
 }
 
 /// Tests all effects that are not yet in the model, and refits the likeliest.
@@ -145,13 +159,24 @@ pub(crate) async fn test_effects<L: Laboratory>(
     let more = thresholds.rounds.saturating_sub(current.model.added.len());
     let left = session.lab.left(Stage::Refit);
     let share = left - left / more.max(1) as f64;
+    let null = current.log_evidence_of_noise();
     let mut refits = Vec::new();
     for some in order.chunks(thresholds.suspects.max(RIVALS)) {
         let spent = session.lab.left(Stage::Refit) < share;
         if !refits.is_empty() && (spent || !session.lab.has_budget(Stage::Refit)) {
             break;
         }
-        refits.extend(refit(&mut session.experiments(Stage::Refit), current, some).await?);
+        let gains = refits
+            .iter()
+            .map(|refit: &Refitted<Fit>| refit.log_evidence - null);
+        let best = gains.fold(0.0, f64::max);
+        // half the statistic is the gain of evidence that the linearised model promises; what acts from a level
+        // on promises nothing by it
+        let promises = |own: &&&WorkingCandidate| {
+            !own.rungs.is_empty() || may_compete(0.5 * own.statistic(), best)
+        };
+        let some: Vec<&WorkingCandidate> = some.iter().filter(promises).copied().collect();
+        refits.extend(refit(&mut session.experiments(Stage::Refit), current, &some, best).await?);
     }
     session.lab.found(&finding(
         &session.base.record.record,

@@ -57,7 +57,7 @@ pub async fn likeliest<L: Laboratory>(
     let suspects = signature::examine(&mut tests, &fit, effects).await?;
     let mut order = candidate::ranked(&suspects);
     order.truncate(REFITS);
-    let mut refits = refit::refit(&mut experiments, &fit, &order).await?;
+    let mut refits = refit::refit(&mut experiments, &fit, &order, 0.0).await?;
     refits.sort_by(|a, b| b.log_evidence.total_cmp(&a.log_evidence));
     let likeliest = refits.iter().take(LIKELIEST);
     Ok(likeliest.map(|refit| refit.fit.point()).collect())

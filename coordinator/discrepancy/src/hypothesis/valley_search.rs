@@ -23,7 +23,7 @@ const LEADERS: usize = 2;
 /// effect is searched.
 const SHARE: f64 = 0.3;
 /// Minimum gain of evidence, as a share of the best refit's, for which a candidate effect is refitted from
-/// the deepest minimum found.
+/// the deepest minimum found: in another minimum it may be another.
 const HOPEFUL: f64 = 0.1;
 /// Dispersion, as a share of that which indicates a missed narrow minimum, above which fits also start from
 /// the unknowns of competing refits and from other stiffness and contact values: too soft a contact leaves
@@ -34,7 +34,7 @@ const LOOSE: f64 = 0.5;
 const DEEPER: usize = 3;
 
 /// Better fit of a candidate effect, with the effect's index among the round's refits.
-struct Found {
+struct DeeperFit {
     place: usize,
     fit: Fit,
 }
@@ -58,7 +58,7 @@ pub(crate) async fn search<L: Laboratory>(
         let starts = from_rivals(round, place, genes);
         let other =
             narrow_minimum::race(&mut session.experiments(Stage::Basin), fit, starts).await?;
-        found.extend(other.map(|fit| Found { place, fit }));
+        found.extend(other.map(|fit| DeeperFit { place, fit }));
     }
     settle(session, current, round, found).await?;
     deeper(session, current, round).await?;
@@ -73,7 +73,10 @@ pub(crate) async fn search<L: Laboratory>(
         let starts =
             global_start::global_starts(&mut experiments, &fit.model, rest, search).await?;
         let other = narrow_minimum::race(&mut experiments, fit, starts).await?;
-        let found = other.map(|fit| Found { place, fit }).into_iter().collect();
+        let found = other
+            .map(|fit| DeeperFit { place, fit })
+            .into_iter()
+            .collect();
         settle(session, current, round, found).await?;
     }
     if round.misfit > lost && session.lab.has_budget(Stage::Basin) {
@@ -101,7 +104,7 @@ async fn deeper<L: Laboratory>(
             }
             let fit = &round.refits[place].fit;
             let other = narrow_minimum::scan(&mut session.experiments(Stage::Basin), fit).await?;
-            found.extend(other.map(|fit| Found { place, fit }));
+            found.extend(other.map(|fit| DeeperFit { place, fit }));
         }
         if found.is_empty() {
             break;
@@ -117,7 +120,7 @@ async fn from_low_orders<L: Laboratory>(
     session: &mut Session<'_, L>,
     current: &Fit,
     round: &mut WorkingRound,
-) -> Result<Vec<Found>, L::Error> {
+) -> Result<Vec<DeeperFit>, L::Error> {
     let effects: Vec<EffectDescriptor> =
         round.candidates.iter().map(|s| s.effect.clone()).collect();
     let highest = session.inputs.thresholds.orders;
@@ -145,7 +148,7 @@ async fn from_low_orders<L: Laboratory>(
             round.refits.push(Refitted::new(id, fit.clone()));
             round.refits.len() - 1
         });
-        found.push(Found { place, fit });
+        found.push(DeeperFit { place, fit });
     }
     Ok(found)
 }
@@ -180,13 +183,13 @@ async fn settle<L: Laboratory>(
     session: &mut Session<'_, L>,
     current: &Fit,
     round: &mut WorkingRound,
-    found: Vec<Found>,
+    found: Vec<DeeperFit>,
 ) -> Result<(), L::Error> {
     let left = |a: &&Fit, b: &&Fit| a.chi_squared().total_cmp(&b.chi_squared());
     let Some(deepest) = found.iter().map(|found| &found.fit).min_by(left).cloned() else {
         return Ok(());
     };
-    for Found { place, fit } in found {
+    for DeeperFit { place, fit } in found {
         replace(&mut round.refits[place], fit);
     }
     let genes = current.model.space.dimension();

@@ -234,8 +234,9 @@ impl<L: Laboratory> Experiments<'_, L> {
                     .map(|seen| Some(seen.as_ref()?.whitened(self.on)));
                 search.absorb(whitened.collect::<Vec<Option<EvaluatedPoint>>>());
                 let arrived = plan.iter().position(|x| *x == search.best().x);
-                if let Some(seen) = arrived.and_then(|k| own.into_iter().nth(k)) {
-                    *best = seen.map(|seen| seen.curves);
+                // an evaluation for the derivatives that is lost loses no curves
+                if let Some(seen) = arrived.and_then(|k| own.into_iter().nth(k)?) {
+                    *best = Some(seen.curves);
                 }
             }
         }

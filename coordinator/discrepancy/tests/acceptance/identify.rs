@@ -114,6 +114,7 @@ fn seen(seed: u64, unknowns: Vec<Unknown>) -> IdentificationResult {
         differentiates: true,
         differences: false,
         start: Some(vec![0.0; space.dimension()]),
+        families: None,
         space,
         unknowns,
         records: vec![record(seed, &TRUTH)],
@@ -309,6 +310,7 @@ fn of_line(seed: u64, correlation: f64, stated: Option<f64>) -> (IdentificationR
         differentiates: true,
         differences: false,
         start: Some(vec![0.0; 2]),
+        families: None,
         space: Space::new(&unknowns).expect("ordered"),
         unknowns,
         records: vec![Record {

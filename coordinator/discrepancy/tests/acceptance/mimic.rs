@@ -123,6 +123,7 @@ pub(crate) fn inputs(
         records: records.map(|(at, amounts)| record(at, amounts)).collect(),
         library: ids.iter().map(own).collect(),
         start: Some(vec![0.0]),
+        families: None,
         usual: Numerics::FROM_CASE,
         finer: Vec::new(),
         global_search: "least-squares",

@@ -139,6 +139,7 @@ fn diagnosed_without(records: Vec<Record>, without: &[&str]) -> Diagnosis {
         records,
         library: library(),
         start: Some(vec![TRUTH[0] + 0.004, TRUTH[1] - 0.02]),
+        families: None,
         usual: Numerics::FROM_CASE,
         finer: vec![Numerics::FROM_CASE],
         global_search: "quick",

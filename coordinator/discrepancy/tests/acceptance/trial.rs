@@ -87,6 +87,7 @@ pub(crate) fn diagnosed(truth: &Truth, setup: &Setup) -> (Diagnosis, u64) {
         records,
         library: setup.library.clone(),
         // a calibration has been there: it ends beside the truth, not on it
+        families: None,
         start: Some(
             truth
                 .genes

@@ -178,6 +178,7 @@ fn diagnosed(truth: Ringing, valley: f64) -> Diagnosis {
         records: vec![record(truth)],
         library: library(),
         start: None,
+        families: None,
         usual: Numerics::FROM_CASE,
         finer: vec![Numerics::FROM_CASE],
         global_search: "quick",

@@ -75,7 +75,7 @@ impl Dispatch {
         allow_connections();
         // a folder that was made for a run that cannot begin would only be in the way
         for locator in &listen {
-            admissible(locator, options.insecure)?;
+            admissible(locator, options.access.insecure)?;
         }
         let keys = keys(&options, &listen)?;
         let program = match &local {
@@ -84,7 +84,7 @@ impl Dispatch {
         };
         let (parts, entries) = Parts::open(&options)?;
         let (run, blob) = (parts.run, parts.blob.clone());
-        let insecure = options.insecure;
+        let insecure = options.access.insecure;
         let link_options = CoordinatorOptions {
             listen,
             insecure,
@@ -101,7 +101,7 @@ impl Dispatch {
             }
             _ => None,
         };
-        let only_local = options.listen.is_none();
+        let only_local = options.access.listen.is_none();
         let run_dir = options.run_dir.clone();
         let mut open = Self::begin((parts, entries), link, workers, only_local, run_dir);
         open.listening = listening;
@@ -121,7 +121,7 @@ impl Dispatch {
     }
 
     /// Opens a run over the link that `make` creates from the run's identifier and the data that workers may
-    /// fetch, without local workers. `options.listen`, `insecure` and `local_workers` are not used.
+    /// fetch, without local workers. `options.access.listen`, `insecure` and `local_workers` are not used.
     ///
     /// # Errors
     /// [`DispatchError::Journal`] as [`Self::open`].

@@ -20,7 +20,7 @@ const FILES: u64 = 16 << 10;
 
 /// Raises this process's limit of open files: the usual limit of about a thousand could be used up by a few
 /// silent peers.
-pub(super) fn allow_connections() {
+pub fn allow_connections() {
     let Rlimit { current, maximum } = getrlimit(Resource::Nofile);
     let wanted = maximum.map_or(FILES, |maximum| maximum.min(FILES));
     if current.is_none_or(|current| current >= wanted) {
@@ -55,9 +55,13 @@ pub(super) fn keys(
     let Some(secured) = listen.iter().find(|at| at.protocol == Protocol::Quic) else {
         return Ok(None);
     };
-    let folder = options.tls.as_ref().ok_or_else(|| LinkError::NoKeys {
-        locator: secured.to_string(),
-    })?;
+    let folder = options
+        .access
+        .tls
+        .as_ref()
+        .ok_or_else(|| LinkError::NoKeys {
+            locator: secured.to_string(),
+        })?;
     let keys = Keys::read(folder, KeyRole::Coordinator).map_err(LinkError::from)?;
     Ok(Some(keys))
 }
@@ -74,7 +78,12 @@ pub(super) struct Addresses {
 
 /// Determines the addresses to listen on, and makes the folder of the Unix socket for local workers.
 pub(super) fn addresses(options: &DispatchOptions) -> Result<Addresses, DispatchError> {
-    let asked = options.listen.as_deref().map(Locator::parse).transpose()?;
+    let asked = options
+        .access
+        .listen
+        .as_deref()
+        .map(Locator::parse)
+        .transpose()?;
     if options.local_workers == 0 {
         let listen = vec![asked.ok_or(DispatchError::NoWorkers)?];
         let (local, folder) = (None, None);

@@ -2,7 +2,6 @@
 //!
 //! [`Dispatch`] is opened on a run folder, given jobs and asked for results. It runs on a task of its own, so
 //! that a caller busy with computations delays no worker.
-mod bench;
 pub mod control;
 mod coordination;
 mod dispatch;
@@ -18,18 +17,16 @@ mod suspend;
 mod worker_control;
 
 pub use crate::scheduler::{Completed, PAUSE_LIMIT, Policy, Snapshot};
-pub use bench::{
-    BenchPlan, BenchResult, BenchWorkers, SilentPlan, SilentResult, SilentStage,
-    SleepingJobsResult, bench, connect, keep_silent, processor_time, sleep_through,
-};
+#[cfg(any(test, feature = "simulated"))]
 pub(crate) use coordination::Coordination;
 pub use dispatch::Dispatch;
 #[cfg(test)]
 pub(crate) use divide::by_columns::ByColumns;
 pub use divide::{Divide, Undivided};
+#[cfg(any(test, feature = "simulated"))]
 pub(crate) use divide::{anticipated_parts, part_count};
 pub use engine::RunSummary;
 pub use error::DispatchError;
 pub use journal::event::{RunHeader, Spent};
-pub use listen::local_socket;
-pub use options::DispatchOptions;
+pub use listen::{allow_connections, local_socket};
+pub use options::{DispatchOptions, RemoteAccess};

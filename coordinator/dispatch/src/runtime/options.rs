@@ -15,17 +15,24 @@ use std::{
     time::Duration,
 };
 
+/// Access for workers of other machines; none by default.
+#[derive(Clone, Debug, Default)]
+pub struct RemoteAccess {
+    /// Address at which they may connect; `None` for local workers only.
+    pub listen: Option<String>,
+    /// Folder of the coordinator's key material, for QUIC addresses.
+    pub tls: Option<PathBuf>,
+    /// Whether the address may be unencrypted and open to the network.
+    pub insecure: bool,
+}
+
 /// Options for opening a run.
 #[derive(Clone, Debug)]
 pub struct DispatchOptions {
     /// Run folder with the journal; created if missing.
     pub run_dir: PathBuf,
-    /// Address for workers of other machines; `None` for local workers only.
-    pub listen: Option<String>,
-    /// Whether the listening address may be unencrypted and open to the network.
-    pub insecure: bool,
-    /// Folder of the coordinator's key material, for QUIC addresses.
-    pub tls: Option<PathBuf>,
+    /// Access for workers of other machines.
+    pub access: RemoteAccess,
     /// Number of worker processes to start on this machine, with one slot each.
     pub local_workers: usize,
     /// Maximum time to wait while the journal cannot be written, or while only jobs are left whose workers were
@@ -54,9 +61,7 @@ impl DispatchOptions {
     ) -> Result<Self, WireError> {
         Ok(Self {
             run_dir: run_dir.to_owned(),
-            listen: None,
-            insecure: false,
-            tls: None,
+            access: RemoteAccess::default(),
             local_workers,
             pause_limit: PAUSE_LIMIT,
             divide: Arc::new(Undivided),

@@ -62,7 +62,7 @@ impl Parts {
             proof: begun.proof,
             finished: journal.finished().collect(),
             // local workers end with their coordinator
-            expected: if options.listen.is_some() {
+            expected: if options.access.listen.is_some() {
                 begun.present
             } else {
                 BTreeSet::new()

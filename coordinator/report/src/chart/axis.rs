@@ -1,8 +1,7 @@
 //! Horizontal axis shared by several curves: range and title.
 use super::scale::AxisScale;
-use crate::number::unit;
-use crate::words::abscissa_quantity;
-use protocol::case::Abscissa;
+use crate::{number::unit, words::abscissa_quantity};
+use protocol::case::{Abscissa, Case};
 
 /// Scale and title of a horizontal axis.
 #[derive(Clone, Debug, PartialEq)]
@@ -14,9 +13,8 @@ pub struct ChartAxis {
 }
 
 impl ChartAxis {
-    /// Creates the horizontal axis for an abscissa; `zero`, appended to its name in the title, states the
-    /// abscissa's origin and may be empty.
-    pub fn of(abscissa: &Abscissa, zero: &str) -> Self {
+    /// Creates the horizontal axis for an abscissa of a case.
+    pub fn of(case: &Case, abscissa: &Abscissa) -> Self {
         let ends = abscissa.points.first().zip(abscissa.points.last());
         let (first, last) = ends.map_or((0.0, 1.0), |(first, last)| (*first, *last));
         let scale = match abscissa.period {
@@ -29,8 +27,9 @@ impl ChartAxis {
         Self {
             scale,
             title: format!(
-                "{}{zero} [{}]",
+                "{}{} [{}]",
                 abscissa_quantity(abscissa),
+                case::kind::of(case).abscissa_origin(),
                 unit(&abscissa.unit)
             ),
         }

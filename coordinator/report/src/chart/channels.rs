@@ -1,17 +1,20 @@
 //! Figures of one simulation's channels in stacked strips, in absolute values, with the measured mean and
 //! spread where recorded.
-use super::axis::ChartAxis;
-use super::strip::{Strip, curve, stack, strip};
-use crate::color::{INK, VERMILLION};
-use crate::data::SimulationView;
-use crate::document::Figure;
-use crate::number::unit;
-use crate::words::condition_name;
+use super::{
+    axis::ChartAxis,
+    strip::{Strip, curve, stack, strip},
+};
+use crate::{
+    color::{INK, VERMILLION},
+    data::SimulationView,
+    document::Figure,
+    number::unit,
+    words::condition_name,
+};
 use protocol::case::Channel;
 
-/// Draws all channels of a simulation, one figure per abscissa name; `zero`, the description of the
-/// abscissa's origin, is passed to [`ChartAxis::of`].
-pub fn channels(of: &SimulationView<'_>, zero: &str) -> Vec<Figure> {
+/// Draws all channels of a simulation, one figure per abscissa name.
+pub fn channels(of: &SimulationView<'_>) -> Vec<Figure> {
     let all = of.case.channels_of(of.condition);
     let mut kinds: Vec<&Channel> = all.map(|(_, channel)| channel).collect();
     kinds.dedup_by(|one, other| one.abscissa.name == other.abscissa.name);
@@ -24,7 +27,7 @@ pub fn channels(of: &SimulationView<'_>, zero: &str) -> Vec<Figure> {
             format!(
                 "Simulated curves under condition {condition}, absolute values: no curve is shifted here."
             ),
-            &ChartAxis::of(&kind.abscissa, zero),
+            &ChartAxis::of(of.case, &kind.abscissa),
             &strips(of, |channel| channel.abscissa.name == *over),
         )
     };

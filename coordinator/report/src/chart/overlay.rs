@@ -1,16 +1,20 @@
 //! Measured against simulated curves of one channel, recommended beside optimised parameters on shared
 //! scales, with the residual below (paper, Figs. 7, 9 and 10).
-use super::axis::ChartAxis;
-use super::before_after::{BeforeAfter, before_after};
-use super::canvas::{Canvas, Pen, TextStyle, WIDTH, render};
-use super::panel::Panel;
-use super::points::points;
-use super::scale::AxisScale;
-use crate::color::{BAND, GREY, INK, VERMILLION};
-use crate::data::{ConditionResult, Run};
-use crate::document::Figure;
-use crate::number::{percent, significant, unit};
-use crate::{kind, words};
+use super::{
+    axis::ChartAxis,
+    before_after::{BeforeAfter, before_after},
+    canvas::{Canvas, Pen, TextStyle, WIDTH, render},
+    panel::Panel,
+    points::points,
+    scale::AxisScale,
+};
+use crate::{
+    color::{BAND, GREY, INK, VERMILLION},
+    data::{ConditionResult, ScoredCurves},
+    document::Figure,
+    number::{percent, significant, unit},
+    words,
+};
 use protocol::case::{Case, Channel, ChannelRecord, Offset};
 use protocol::job::{ChannelScore, Verdict};
 
@@ -52,7 +56,7 @@ fn extremes(values: &[f64]) -> (f64, f64) {
 impl Side {
     fn new(
         heading: &'static str,
-        (run, values): (&Run, &[f64]),
+        (run, values): (&ScoredCurves, &[f64]),
         (at, channel): (usize, &Channel),
         record: &ChannelRecord,
     ) -> Self {
@@ -142,7 +146,7 @@ pub fn overlay(case: &Case, result: &ConditionResult, at: usize) -> Option<Figur
         band,
         values,
         residuals,
-        axis: kind::axis(case, &channel.abscissa),
+        axis: ChartAxis::of(case, &channel.abscissa),
         unit: unit(&channel.unit),
     };
     let svg = render((WIDTH, HEIGHT), &title, |canvas| {
@@ -178,9 +182,9 @@ pub(crate) fn fitted(case: &Case, result: &ConditionResult) -> Option<Figure> {
         .collect();
     let axes = channels
         .iter()
-        .map(|(_, channel, _)| kind::axis(case, &channel.abscissa));
+        .map(|(_, channel, _)| ChartAxis::of(case, &channel.abscissa));
     let axes: Vec<ChartAxis> = axes.collect();
-    let shifted = |run: &Run, at: usize, channel: &Channel| -> Vec<f64> {
+    let shifted = |run: &ScoredCurves, at: usize, channel: &Channel| -> Vec<f64> {
         let score = run.evaluation.channels.iter().find(|own| own.channel == at);
         let shift = shift(channel.offset, score);
         let curve = run.shown(case, result.condition).channel(channel);

@@ -1,5 +1,5 @@
 //! Speed-up of searches over the number of slots: one curve per search, beside the ideal line.
-use super::canvas::{Canvas, Pen, TextStyle, WIDTH, render};
+use super::canvas::{Pen, TextStyle, WIDTH, render};
 use super::panel::Panel;
 use super::scale::AxisScale;
 use crate::color::{BLUE, Color, GREEN, GREY, INK, PURPLE, VERMILLION};
@@ -14,7 +14,7 @@ const HEIGHT: f64 = 280.0;
 const FOOT: f64 = 52.0;
 const COLORS: [Color; 5] = [BLUE, VERMILLION, GREEN, PURPLE, INK];
 
-/// Curves of a figure by search and method.
+/// Curves of a figure by search and workers.
 type Curves = BTreeMap<(String, SlotMode), Vec<(f64, f64)>>;
 
 /// Draws the speed-up of searches over the number of slots.
@@ -48,7 +48,10 @@ pub(crate) fn speed_up(rows: &[ScalingRow]) -> Figure {
             let of = searches.iter().position(|own| own == search);
             let color = COLORS[of.unwrap_or(0) % COLORS.len()];
             let name = format!("{search}, {}", how.as_str());
-            draw(canvas, &panel, (curve, *how), color);
+            panel.curve(canvas, curve, Pen::new(color, 1.4));
+            for point in curve.iter() {
+                canvas.dot(panel.at(*point), 3.0, color);
+            }
             let beside = (panel.right() + 12.0, TOP + 10.0 + 13.5 * index as f64);
             canvas.text(beside, &name, TextStyle::new(9.5, color));
         }
@@ -57,24 +60,7 @@ pub(crate) fn speed_up(rows: &[ScalingRow]) -> Figure {
     });
     Figure {
         name: "speed_up".to_owned(),
-        caption: format!(
-            "{title}; the dashed line is what it would be if no slot were ever idle. Projections are dashed."
-        ),
+        caption: format!("{title}; the dashed line is what it would be if no slot were ever idle."),
         svg,
-    }
-}
-
-/// Draws the curve of a search in one color, dashed if it was projected.
-fn draw(canvas: &mut Canvas, panel: &Panel, (curve, how): (&[(f64, f64)], SlotMode), color: Color) {
-    let pen = Pen::new(color, 1.4);
-    if how == SlotMode::Projected {
-        for pair in curve.windows(2) {
-            canvas.dashed(panel.at(pair[0]), panel.at(pair[1]), pen);
-        }
-    } else {
-        panel.curve(canvas, curve, pen);
-    }
-    for point in curve {
-        canvas.dot(panel.at(*point), 3.0, color);
     }
 }

@@ -1,9 +1,10 @@
 //! Curves of a diagnosis by condition: measured, and simulated without the added effects, with them, and with
 //! the best rejected rival.
 use super::subject::DiagnosisInput;
-use crate::chart::{ChartAxis, GapComparison};
-use crate::kind;
-use crate::words::condition_name;
+use crate::{
+    chart::{ChartAxis, GapComparison},
+    words::condition_name,
+};
 use record::{Curves, Record};
 
 /// Measured and simulated curves of one condition, on the grid of its record.
@@ -99,7 +100,7 @@ fn before<'a>(
     let record = subject.record(condition)?;
     let mean = record.mean();
     let channels = record.channels.iter();
-    let axes = channels.map(|own| kind::axis(subject.case, &own.channel.abscissa));
+    let axes = channels.map(|own| ChartAxis::of(subject.case, &own.channel.abscissa));
     Some(ConditionCurves {
         condition: condition_name(subject.case, condition),
         axes: axes.collect(),

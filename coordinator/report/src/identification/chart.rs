@@ -1,14 +1,18 @@
 //! Figures of an identification: likelihood profiles of the unknowns and prediction bands.
 use super::subject::IdentificationInput;
-use crate::chart::canvas::{Canvas, Pen, TextStyle, WIDTH, render};
-use crate::chart::panel::Panel;
-use crate::chart::scale::AxisScale;
-use crate::chart::strip::{Strip, curve, stack, strip};
-use crate::color::{AXIS, BAND, INK, VERMILLION};
-use crate::document::Figure;
-use crate::kind;
-use crate::number::{significant, unit};
-use crate::words::{condition_name, with_unit};
+use crate::{
+    chart::{
+        ChartAxis,
+        canvas::{Canvas, Pen, TextStyle, WIDTH, render},
+        panel::Panel,
+        scale::AxisScale,
+        strip::{Strip, curve, stack, strip},
+    },
+    color::{AXIS, BAND, INK, VERMILLION},
+    document::Figure,
+    number::{significant, unit},
+    words::{condition_name, with_unit},
+};
 use discrepancy::identify::UnknownEstimate;
 use protocol::case;
 
@@ -119,7 +123,7 @@ pub(super) fn bands(subject: &IdentificationInput<'_>) -> Vec<Figure> {
                     "What the fit predicts under condition {condition}, and (grey) how far the record leaves it \
                      open at 95 %. Where no grey shows, it is narrower than the line."
                 ),
-                &kind::axis(case, abscissa),
+                &ChartAxis::of(case, abscissa),
                 &strips,
             )
         };

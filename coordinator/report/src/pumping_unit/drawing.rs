@@ -1,19 +1,19 @@
 //! Report content of the pumping unit, as an implementation of [`ModelReport`].
 use super::{animation, card::card, check, contact::contact, csv, revolution, single};
-use crate::data::{SimulationView, SingleRun};
-use crate::document::{Block, Figure, Section, Table};
-use crate::drawing::ModelReport;
-use crate::folder::{ReportError, stream};
-use crate::machine_check::{ComparedChannel, MachineCheck};
+use crate::{
+    data::{SimulationView, SingleRun},
+    document::{Block, Figure, Section, Table},
+    folder::{ReportError, stream},
+    machine_check::{ComparedChannel, MachineCheck},
+    model_report::ModelReport,
+};
+use case::kind::PumpingUnitModel;
 use maud::html;
-use protocol::case::{Case, Unknown};
-use protocol::pumping_unit::{Coefficient, Machine, Simulation};
+use protocol::case::Case;
+use protocol::pumping_unit::{Machine, Simulation};
 use std::path::{Path, PathBuf};
 
-/// Report content of the pumping-unit model.
-pub struct PumpingUnitReport;
-
-impl ModelReport for PumpingUnitReport {
+impl ModelReport for PumpingUnitModel {
     fn channels(&self, of: &SimulationView<'_>) -> Vec<Figure> {
         vec![revolution::gauges(of)]
     }
@@ -56,18 +56,6 @@ impl ModelReport for PumpingUnitReport {
         animation::PLAYER
     }
 
-    fn zero(&self) -> &'static str {
-        revolution::ZERO
-    }
-
-    fn group(&self, unknown: &Unknown) -> &'static str {
-        match Coefficient::named(&unknown.name) {
-            Some(Coefficient::Kc | Coefficient::Cc) => "Contact",
-            Some(_) => "Rope joints",
-            None => "Unknowns",
-        }
-    }
-
     fn tables(&self, run: &SingleRun) -> Vec<Table> {
         Simulation::of(&run.curves).map_or_else(
             |_| Vec::new(),
@@ -104,10 +92,5 @@ impl ModelReport for PumpingUnitReport {
             written.push(stream(folder, "ropes.csv", ropes)?);
         }
         Ok(written)
-    }
-
-    fn frequency_hz(&self, case: &Case, condition: usize) -> Option<f64> {
-        let machine = Machine::of(case).ok()?;
-        Some(machine.conditions.get(condition)?.speed_rpm / 60.0)
     }
 }

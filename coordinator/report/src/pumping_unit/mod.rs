@@ -9,6 +9,7 @@ mod contact;
 pub mod csv;
 mod drawing;
 mod head;
+mod head_life;
 mod head_modes;
 mod import;
 mod name;
@@ -16,8 +17,8 @@ mod revolution;
 mod single;
 pub mod vtu;
 
-pub use drawing::PumpingUnitReport;
 pub use head::{head_gauges, head_modes as head_mode_table, head_pair, head_statics};
+pub use head_life::{HeadLifePicture, SECTOR_DEG, write_head_life};
 pub use head_modes::{HeadPicture, write_head_modes};
 pub use import::{imported_card, turns};
 pub use name::{integrator_name, mode_family};

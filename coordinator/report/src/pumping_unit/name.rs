@@ -14,9 +14,5 @@ pub const fn integrator_name(integrator: Integrator) -> &'static str {
     match integrator {
         Integrator::TrBdf2 => "TR-BDF2",
         Integrator::Esdirk4 => "ESDIRK4",
-        Integrator::Rodas4 => "RODAS4",
-        Integrator::GeneralizedAlpha => "generalised-alpha",
-        Integrator::Bdf => "BDF, order ≤ 2",
-        Integrator::Bdf5 => "BDF, order ≤ 5",
     }
 }

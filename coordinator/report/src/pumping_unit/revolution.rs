@@ -7,17 +7,15 @@ use crate::color::{BLUE, GREEN, INK, PURPLE, VERMILLION};
 use crate::data::SimulationView;
 use crate::document::Figure;
 use crate::words::condition_name;
+use case::{ModelKind as _, kind::PumpingUnitModel};
 use protocol::case::Case;
 use protocol::pumping_unit::{Sensor, Simulation};
-
-/// Origin of the crank angle, appended to the axis title.
-pub(super) const ZERO: &str = " from bottom dead centre";
 
 /// Returns the axis of all curves: one revolution of the crank.
 pub(super) fn axis() -> ChartAxis {
     ChartAxis {
         scale: AxisScale::turn(),
-        title: format!("crank angle{ZERO} [deg]"),
+        title: format!("crank angle{} [deg]", PumpingUnitModel.abscissa_origin()),
     }
 }
 

@@ -1,20 +1,23 @@
-//! Report on the parallel scaling of searches: measured and projected results, the figure, and the
-//! assumptions of the projection. Takes these data as plain values and does not measure.
+//! Report on the parallel scaling of searches: measured results and their figure. Takes these data as plain values and
+//! does not measure.
 use super::chart::speed_up;
 use super::data::Origin;
-use super::document::{Block, Fact, Report, Row as Cells, Section, Table};
+use super::document::{Block, Report, Row as Cells, Section, Table};
 use super::folder::{ReportError, write_report};
-use super::number::{count, duration, fixed, percent, significant};
+use super::number::{MISSING, count, duration, fixed, percent, significant};
 use super::section::origin;
 use protocol::case::Case;
 use std::path::{Path, PathBuf};
 use study::scaling::{ScalingResult, ScalingRow, SlotMode};
 
+/// Index of the median among quantiles in steps of 5 %.
+const MEDIAN: usize = 10;
+
 /// Input data of a scaling report.
 pub struct ScalingInput<'a> {
     /// Case on which the searches ran.
     pub case: &'a Case,
-    /// Measured and projected scaling of the searches, with overheads and assumptions.
+    /// Measured scaling of the searches.
     pub scaled: &'a ScalingResult,
     /// Provenance of the measurement (run, program, digest).
     pub origin: Origin,
@@ -26,7 +29,6 @@ pub fn report(subject: &ScalingInput<'_>) -> Report {
     let facts = origin::facts(&subject.origin, subject.case);
     let sections = vec![
         rows(subject.scaled),
-        assumptions(subject.scaled),
         origin::section(vec![Block::Facts(facts)]),
     ];
     Report::new(title, &subject.origin.run, sections)
@@ -49,18 +51,16 @@ fn rows(scaled: &ScalingResult) -> Section {
             Block::Table(speeds(scaled)),
             Block::Figure(speed_up(&scaled.rows)),
             Block::Table(shares(scaled)),
+            Block::Table(simulations(scaled)),
         ],
     }
 }
 
-/// Builds the rows of a scaling table, grouped by how jobs ran: computed here or on remote workers, replaced by
-/// sleeping, or simulated on a simulated clock.
+/// Builds the rows of a scaling table, grouped by workers: those of this machine and remote ones.
 fn grouped(scaled: &ScalingResult, cells: impl Fn(&ScalingRow) -> Vec<String>) -> Vec<Cells> {
     let groups = [
         (SlotMode::Computed, "computed: the case, on this machine"),
         (SlotMode::Remote, "remote: the case, on other workers"),
-        (SlotMode::Slept, "slept: sessions over TCP on this machine"),
-        (SlotMode::Projected, "projected: on a simulated clock"),
     ];
     let mut rows = Vec::new();
     for (how, title) in groups {
@@ -131,41 +131,28 @@ fn shares(scaled: &ScalingResult) -> Table {
     ])
 }
 
-fn assumptions(scaled: &ScalingResult) -> Section {
-    let own = &scaled.overheads;
-    let facts = vec![
-        Fact::new(
-            "a simulation in one slot",
-            format!("{} s", significant(own.simulation_s)),
-        ),
-        Fact::new(
-            "half of them took at most",
-            format!(
-                "{} s",
-                significant(
-                    own.simulation_quantiles_s
-                        .get(10)
-                        .copied()
-                        .unwrap_or(f64::NAN)
-                )
-            ),
-        ),
-        Fact::new(
-            "a simulation with derivatives",
-            format!("{} plain ones", fixed(own.derivatives_over_plain, 1)),
-        ),
-        Fact::new(
-            "coordinator, a result over TCP",
-            format!("{} us", fixed(own.coordinator_us, 0)),
-        ),
-        Fact::new(
-            "round trip over TCP on loopback",
-            format!("{} ms", fixed(own.round_trip_ms, 2)),
-        ),
+fn simulations(scaled: &ScalingResult) -> Table {
+    let quantile = |row: &ScalingRow, index: usize| {
+        let at = row.simulation_quantiles_s.get(index);
+        at.map_or_else(|| MISSING.to_owned(), |time| significant(*time))
+    };
+    let cells = |row: &ScalingRow| {
+        vec![
+            significant(row.simulation_s),
+            quantile(row, MEDIAN),
+            quantile(row, MEDIAN + 9),
+            fixed(row.derivatives_over_plain, 1),
+        ]
+    };
+    let head = [
+        "search and population",
+        "slots",
+        "mean [s]",
+        "median [s]",
+        "95 % at most [s]",
+        "derivatives",
     ];
-    Section {
-        id: "assumptions",
-        title: "What the projection is made from",
-        blocks: vec![Block::Facts(facts), Block::List(scaled.assumptions.clone())],
-    }
+    Table::new("Computing times of simulations", head, grouped(scaled, cells)).with_notes([
+        "Derivatives: computing time of a simulation with the derivatives by all unknowns, over that of a plain one.",
+    ])
 }

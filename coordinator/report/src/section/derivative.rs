@@ -1,19 +1,21 @@
 //! Report section on the derivatives of the curves with respect to the unknowns: table and figures.
-use crate::chart::ChartAxis;
-use crate::chart::strip::{Strip, StripCurve, curve, stack, strip};
-use crate::color::{BLUE, GREEN, INK, PURPLE, VERMILLION};
-use crate::data::SingleRun;
-use crate::document::{Block, Figure, Row, Section, Table, figures};
-use crate::kind;
-use crate::number::{significant, unit};
-use crate::words::condition_name;
+use crate::{
+    chart::{
+        ChartAxis,
+        strip::{Strip, StripCurve, curve, stack, strip},
+    },
+    color::{BLUE, GREEN, INK, PURPLE, VERMILLION},
+    data::SingleRun,
+    document::{Block, Figure, Row, Section, Table, figures},
+    number::{significant, unit},
+    words::condition_name,
+};
 use protocol::case::Channel;
 use protocol::job::{Derivative, Per};
 
 pub(super) fn simulation(run: &SingleRun) -> Section {
     let mut blocks: Vec<Block> = derivatives(run).map(Block::Table).into_iter().collect();
-    let zero = kind::of(&run.case).zero();
-    blocks.extend(figures(charts(run, zero)));
+    blocks.extend(figures(charts(run)));
     Section {
         id: "derivatives",
         title: "Derivatives",
@@ -64,9 +66,8 @@ fn row(name: &str, channel: &Channel, per: &Per, values: &[f32]) -> Row {
     Row::new(name, cells)
 }
 
-/// Draws the derivatives of the curves, one figure per unit and abscissa of the channels; `zero`, the
-/// description of the abscissa's origin, is passed to [`ChartAxis::of`].
-pub(crate) fn charts(run: &SingleRun, zero: &str) -> Vec<Figure> {
+/// Draws the derivatives of the curves, one figure per unit and abscissa of the channels.
+pub(crate) fn charts(run: &SingleRun) -> Vec<Figure> {
     let channels = run.case.channels_of(run.condition);
     let channels: Vec<&Channel> = channels.map(|(_, channel)| channel).collect();
     let mut kinds: Vec<&Channel> = Vec::new();
@@ -87,7 +88,7 @@ pub(crate) fn charts(run: &SingleRun, zero: &str) -> Vec<Figure> {
                     "By how much the curves under condition {condition} change, to first order, when each \
                      of these grows alone."
                 ),
-                &ChartAxis::of(&kind.abscissa, zero),
+                &ChartAxis::of(&run.case, &kind.abscissa),
                 &strips,
             )
         })

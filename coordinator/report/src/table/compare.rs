@@ -1,9 +1,10 @@
 //! Tables that compare the recommended with the optimised parameters (reference paper, Tables 3 and 4).
-use crate::data::{Calibration, ConditionResult};
-use crate::document::{Row, Table};
-use crate::kind;
-use crate::number::{MISSING, percent, precise, ratio, significant, squared, unit};
-use crate::words::{self, condition_name};
+use crate::{
+    data::{Calibration, ConditionResult},
+    document::{Row, Table},
+    number::{MISSING, percent, precise, ratio, significant, squared, unit},
+    words::{self, condition_name},
+};
 use protocol::case::{Case, Channel, Offset};
 use protocol::job::{ChannelScore, Verdict};
 
@@ -188,7 +189,7 @@ const HEAD: [&str; 5] = [
 fn gene_rows(calibration: &Calibration) -> Vec<Row> {
     let intervals = words::intervals(calibration);
     let mut rows = Vec::new();
-    let (mut group, kind) = ("", kind::of(&calibration.case));
+    let (mut group, kind) = ("", case::kind::of(&calibration.case));
     let genes = calibration.case.unknowns.iter().enumerate();
     for (index, gene) in genes {
         let name = match gene.of_effect() {

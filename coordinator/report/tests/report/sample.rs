@@ -8,13 +8,15 @@ use protocol::{
     id::WorkerId,
     job::{ChannelScore, Counters, Curves, Evaluation, Reached, Verdict},
     pumping_unit::{
-        BackHead, Beam, Coefficient, Contact, Crank, Energy, FrontHead, Influence, LoadCard,
-        Machine, ModalHead, Rod, RopeEnds, Ropes, RunSettings, Sensor, Simulation, Smoothing,
-        Suspension, TurnSense, WorkingCondition,
+        BackHead, Beam, Coefficient, Contact, Crank, Energy, FrontHead, HeadLoads, Influence,
+        LoadCard, Machine, ModalHead, Rod, RopeEnds, Ropes, RunSettings, Sensor, Simulation,
+        Smoothing, Suspension, TurnSense, WorkingCondition,
     },
     unit::Unit,
 };
-use report::{Calibration, ConditionResult, HistoryPoint, Individual, Origin, Run, SingleRun};
+use report::{
+    Calibration, ConditionResult, HistoryPoint, Individual, Origin, ScoredCurves, SingleRun,
+};
 
 /// Number of crank-angle points per revolution in the sample simulation.
 const GRID: usize = 720;
@@ -161,7 +163,6 @@ fn machine() -> Machine {
             lead_in_deg: 30.0,
             ramp_s: 2.0,
             integrator: protocol::pumping_unit::Integrator::Esdirk4,
-            spectral_radius: 0.5,
             longest_step_s: 0.03,
             tolerance: 1.0,
             modes: 6,
@@ -332,6 +333,7 @@ pub(crate) fn simulation(case: &Case, error: f64, motion_step_deg: f64) -> Simul
                 curve.map(|pull| 1e-9 * f64::from(mode) * pull).collect()
             })
             .collect(),
+        head_loads: HeadLoads::default(),
         energy: Energy {
             input_j: 92_310.0,
             output_j: 91_800.0,
@@ -421,9 +423,9 @@ fn channel_score(channel: usize, measured: &[f64], simulated: &[f64]) -> Channel
     }
 }
 
-pub(crate) fn run(case: &Case, condition: usize, error: f64) -> Run {
+pub(crate) fn run(case: &Case, condition: usize, error: f64) -> ScoredCurves {
     let simulation = simulation(case, error, if condition == 0 { 2.0 } else { 0.0 });
-    Run {
+    ScoredCurves {
         evaluation: score(case, condition, &simulation),
         curves: curves(case, condition, simulation),
     }
@@ -438,7 +440,7 @@ pub(crate) fn curves(case: &Case, condition: usize, simulation: Simulation) -> C
 }
 
 /// Modifies the simulation of a run under the calibrated condition, and scores the run again.
-pub(crate) fn change(case: &Case, run: &mut Run, change: impl FnOnce(&mut Simulation)) {
+pub(crate) fn change(case: &Case, run: &mut ScoredCurves, change: impl FnOnce(&mut Simulation)) {
     let mut simulation = Simulation::of(&run.curves).expect("a pumping unit");
     change(&mut simulation);
     run.evaluation = score(case, 0, &simulation);

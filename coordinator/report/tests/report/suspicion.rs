@@ -414,6 +414,8 @@ fn estimate(effect: &EffectDescriptor, value: f64, ln_evidence: f64) -> Estimate
 fn accounts() -> Vec<(Stage, StageCost)> {
     let account = |experiments, failed| StageCost {
         experiments,
+        with_derivatives: 30,
+        known: 4,
         failed,
         batches: 7,
     };

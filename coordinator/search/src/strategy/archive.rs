@@ -64,8 +64,8 @@ impl Archive {
         ranked
     }
 
-    /// Returns the individuals from which the next piece may begin, in groups: for each group the genes of its
-    /// individuals, best first. All that survived are one group, unless the last piece distinguished several.
+    /// Returns the individuals from which the next stage may begin, in groups: for each group the genes of its
+    /// individuals, best first. All that survived are one group, unless the last stage distinguished several.
     pub fn start_groups(&self) -> Vec<Vec<Vec<f64>>> {
         if self.start_groups.is_empty() {
             return vec![self.ranked().iter().map(|one| one.genes.clone()).collect()];
@@ -73,7 +73,7 @@ impl Archive {
         self.start_groups.clone()
     }
 
-    /// Replaces the groups of individuals from which the next piece may begin.
+    /// Replaces the groups of individuals from which the next stage may begin.
     pub(super) fn set_start_groups(&mut self, start_groups: Vec<Vec<Vec<f64>>>) {
         self.start_groups = start_groups;
     }

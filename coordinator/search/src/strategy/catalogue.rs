@@ -5,19 +5,20 @@ use super::{
     definition::Preset,
     l_shade,
     memetic::{generations, window},
-    quick, random,
+    random,
     setting::SettingsError,
     settings::Settings,
+    staged,
 };
 use crate::space::Space;
 
 /// All search presets, in the order in which help texts list them.
 pub const CATALOGUE: &[Preset] = &[
-    quick::QUICK,
-    quick::MEMETIC_AND_SCANS,
-    quick::LEAST_SQUARES,
-    quick::DESCENT,
-    quick::HYBRID,
+    staged::QUICK,
+    staged::MEMETIC_AND_SCANS,
+    staged::LEAST_SQUARES,
+    staged::DESCENT,
+    staged::HYBRID,
     generations::PAPER,
     generations::PAPER_BATCH,
     window::WINDOW,

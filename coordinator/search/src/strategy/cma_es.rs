@@ -9,12 +9,12 @@ use super::{
     archive::{Archive, EvaluatedIndividual},
     ask_tell::Strategy,
     covariance::{Distribution, normal, ranked},
-    definition::{Expectations, Preset, SettingGroup},
+    definition::{Preset, SettingGroup},
     proposal::Purpose,
-    sequencer::Conductor,
-    setting::{AllowedValues, Setting, SettingsError, check},
+    sequencer::Sequencer,
+    setting::{AllowedValues, Setting, SettingsError, check, settings},
     settings::{Settings, StrategySettings, build_as},
-    stage::{Batch, Piece, ProposalDraft},
+    stage::{Batch, ProposalDraft, SearchStage},
 };
 use crate::{
     random::{Phase, Streams},
@@ -32,53 +32,19 @@ pub const CMA_ES: Preset = Preset {
     settings: |plan| Settings::of(&CmaEsSettings::for_dimension(plan.space.dimension())),
     groups: &[SettingGroup::whole(SETTINGS)],
     slots: 4,
-    expectations: Expectations {
-        one_basin: 1e-6,
-        many_basins: 3.0,
-        distance: 1e-3,
-        starts_at_recommended: false,
-        valley_evaluations: None,
-        seed_dependent: true,
-    },
     build: build_as::<CmaEsSettings>,
 };
 
-/// Table of the CMA-ES settings that can be set by name on the command line.
-const SETTINGS: &[Setting] = &[
-    Setting::new(
-        "population",
-        AllowedValues::Whole(4, 100_000),
-        "individuals per generation",
-    ),
-    Setting::new(
-        "spread",
-        AllowedValues::Real(1e-6, 10.0),
-        "first standard deviation, as a share of each unknown's trust interval",
-    ),
-    Setting::new(
-        "growth",
-        AllowedValues::Whole(1, 10),
-        "factor on the population of every restart",
-    ),
-    Setting::new(
-        "evaluations",
-        AllowedValues::Whole(4, 100_000_000),
-        "total number of evaluations",
-    ),
-];
-
-/// Settings of CMA-ES with restarts.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct CmaEsSettings {
-    /// Points per generation, at least 4.
-    pub population: usize,
-    /// Initial standard deviation (share of each trust interval).
-    pub spread: f64,
-    /// Factor by which the population grows at every restart.
-    pub growth: usize,
-    /// Total number of evaluations over all restarts, after which the search ends.
-    pub evaluations: usize,
+settings! {
+    /// Settings of CMA-ES with restarts.
+    pub struct CmaEsSettings, table SETTINGS {
+        pub population: usize = "individuals per generation", AllowedValues::Whole(4, 100_000);
+        pub spread: f64 =
+            "first standard deviation, as a share of each unknown's trust interval",
+            AllowedValues::Real(1e-6, 10.0);
+        pub growth: usize = "factor on the population of every restart", AllowedValues::Whole(1, 10);
+        pub evaluations: usize = "total number of evaluations", AllowedValues::Whole(4, 100_000_000);
+    }
 }
 
 impl CmaEsSettings {
@@ -105,7 +71,7 @@ impl StrategySettings for CmaEsSettings {
 
     fn build(&self, space: &Space, seed: u64) -> Result<Box<dyn Strategy>, SettingsError> {
         check(self, SETTINGS)?;
-        let piece = CmaEs {
+        let stage = CmaEs {
             settings: self.clone(),
             space: space.clone(),
             streams: Streams::new(seed, 0),
@@ -115,11 +81,11 @@ impl StrategySettings for CmaEsSettings {
             course: None,
             running: Vec::new(),
         };
-        Ok(Box::new(Conductor::new(vec![Box::new(piece)], false)))
+        Ok(Box::new(Sequencer::new(vec![Box::new(stage)], false)))
     }
 }
 
-/// CMA-ES with a larger population at every restart, as one batch-wise part (piece) of a strategy.
+/// CMA-ES with a larger population at every restart, as one batch-wise part (stage) of a strategy.
 struct CmaEs {
     settings: CmaEsSettings,
     space: Space,
@@ -212,7 +178,7 @@ impl CmaEs {
     }
 }
 
-impl Piece for CmaEs {
+impl SearchStage for CmaEs {
     fn plan(&mut self, _archive: &Archive) -> Option<Batch> {
         let left = self.settings.evaluations.saturating_sub(self.planned);
         if left == 0 {

@@ -22,8 +22,6 @@ pub struct Preset {
     /// Largest number of slots of which the search keeps at least half busy, on the shipped case (projected:
     /// `docs/measurements.md`, "Scaling").
     pub slots: u64,
-    /// Accuracy and properties that tests may demand of the preset.
-    pub expectations: Expectations,
     /// Function that builds the search from the preset's settings: [`super::settings::build_as`] of its
     /// strategy.
     pub build: Build,
@@ -76,25 +74,6 @@ pub struct PresetSetting {
     pub setting: Setting,
     /// JSON pointer to the value within the preset's settings.
     place: String,
-}
-
-/// Accuracy and properties that tests may demand of a preset, in addition to the requirements on all presets;
-/// measured on the functions of [`crate::test_function`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Expectations {
-    /// Upper bound on the final fitness of the search on test functions with one basin of attraction.
-    pub one_basin: f64,
-    /// Upper bound on the final fitness of the search on a test function with many basins of attraction.
-    pub many_basins: f64,
-    /// Upper bound on the distance between the best point and the true minimum in every gene (coordinate).
-    pub distance: f64,
-    /// Whether the first proposed individual has the recommended values.
-    pub starts_at_recommended: bool,
-    /// Maximum number of evaluations to find a narrow minimum on a plateau; `None` if the preset does not
-    /// find such minima.
-    pub valley_evaluations: Option<usize>,
-    /// Whether the proposals depend on the seed.
-    pub seed_dependent: bool,
 }
 
 impl Preset {

@@ -2,7 +2,7 @@
 use super::{
     archive::{Archive, EvaluatedIndividual},
     proposal::Purpose,
-    stage::{Batch, Piece, ProposalDraft},
+    stage::{Batch, ProposalDraft, SearchStage},
 };
 use crate::{
     random::{Phase, Streams},
@@ -43,14 +43,14 @@ pub(super) fn prepend_starts(space: &Space, others: Vec<Vec<f64>>) -> Vec<Vec<f6
         .collect()
 }
 
-/// Batch-wise part (piece) of a strategy that evaluates a fixed set of initial points in one batch.
+/// Batch-wise part (stage) of a strategy that evaluates a fixed set of initial points in one batch.
 pub(super) struct Points {
     drafts: Vec<ProposalDraft>,
     running: usize,
 }
 
 impl Points {
-    /// Creates a piece that evaluates the given points (coordinate).
+    /// Creates a stage that evaluates the given points (coordinate).
     pub(super) fn new(space: &Space, points: &[Vec<f64>]) -> Self {
         let drafts = points.iter().map(|point| ProposalDraft {
             genes: space.values(point),
@@ -63,7 +63,7 @@ impl Points {
     }
 }
 
-impl Piece for Points {
+impl SearchStage for Points {
     fn plan(&mut self, _archive: &Archive) -> Option<Batch> {
         let drafts = std::mem::take(&mut self.drafts);
         self.running = drafts.len();

@@ -8,14 +8,14 @@
 use super::{
     archive::{Archive, EvaluatedIndividual},
     ask_tell::Strategy,
-    definition::{Expectations, Preset, SettingGroup},
+    definition::{Preset, SettingGroup},
     design::{hypercube, prepend_starts},
     evaluation_result::EvaluationResult,
     proposal::Purpose,
-    sequencer::Conductor,
-    setting::{AllowedValues, Setting, SettingsError, check},
+    sequencer::Sequencer,
+    setting::{AllowedValues, Setting, SettingsError, check, settings},
     settings::{Settings, StrategySettings, build_as},
-    stage::{Batch, Piece, ProposalDraft},
+    stage::{Batch, ProposalDraft, SearchStage},
 };
 use crate::{
     random::{Phase, Stream, Streams},
@@ -31,61 +31,24 @@ pub const L_SHADE: Preset = Preset {
     settings: |plan| Settings::of(&LShadeSettings::for_dimension(plan.space.dimension())),
     groups: &[SettingGroup::whole(SETTINGS)],
     slots: 4,
-    expectations: Expectations {
-        one_basin: 0.01,
-        many_basins: 3.0,
-        distance: 0.1,
-        starts_at_recommended: true,
-        valley_evaluations: None,
-        seed_dependent: true,
-    },
     build: build_as::<LShadeSettings>,
 };
 
-/// Table of the L-SHADE settings that can be set by name on the command line.
-const SETTINGS: &[Setting] = &[
-    Setting::new(
-        "population",
-        AllowedValues::Whole(4, 100_000),
-        "individuals per generation",
-    ),
-    Setting::new(
-        "memory",
-        AllowedValues::Whole(1, 1000),
-        "number of memory entries for successful factors",
-    ),
-    Setting::new(
-        "best",
-        AllowedValues::Real(0.01, 1.0),
-        "share of the population, best first, from which the attractor of a mutation is drawn",
-    ),
-    Setting::new(
-        "archive",
-        AllowedValues::Real(0.0, 10.0),
-        "replaced individuals that are kept, as a share of the population",
-    ),
-    Setting::new(
-        "evaluations",
-        AllowedValues::Whole(4, 100_000_000),
-        "total number of evaluations",
-    ),
-];
-
-/// Settings of L-SHADE.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct LShadeSettings {
-    /// Number of individuals in the first generation, at least 4.
-    pub population: usize,
-    /// Number of memory slots for the factors `F` and `CR` of successful trials; each generation writes one
-    /// slot.
-    pub memory: usize,
-    /// Share of the population, best first, from which the `pbest` individual is drawn.
-    pub best: f64,
-    /// Maximum size of the archive of replaced individuals, as a multiple of the population size.
-    pub archive: f64,
-    /// Total number of evaluations, after which the search ends.
-    pub evaluations: usize,
+settings! {
+    /// Settings of L-SHADE.
+    pub struct LShadeSettings, table SETTINGS {
+        pub population: usize = "individuals per generation", AllowedValues::Whole(4, 100_000);
+        /// Number of memory slots for the factors `F` and `CR` of successful trials; each generation writes one
+        /// slot.
+        pub memory: usize = "number of memory entries for successful factors", AllowedValues::Whole(1, 1000);
+        pub best: f64 =
+            "share of the population, best first, from which the attractor of a mutation is drawn",
+            AllowedValues::Real(0.01, 1.0);
+        pub archive: f64 =
+            "replaced individuals that are kept, as a share of the population",
+            AllowedValues::Real(0.0, 10.0);
+        pub evaluations: usize = "total number of evaluations", AllowedValues::Whole(4, 100_000_000);
+    }
 }
 
 impl LShadeSettings {
@@ -108,7 +71,7 @@ impl StrategySettings for LShadeSettings {
 
     fn build(&self, space: &Space, seed: u64) -> Result<Box<dyn Strategy>, SettingsError> {
         check(self, SETTINGS)?;
-        let piece = LShade {
+        let stage = LShade {
             memories: vec![[0.5; 2]; self.memory],
             oldest: 0,
             settings: self.clone(),
@@ -120,13 +83,13 @@ impl StrategySettings for LShadeSettings {
             generation: 0,
             trials: Vec::new(),
         };
-        Ok(Box::new(Conductor::new(vec![Box::new(piece)], false)))
+        Ok(Box::new(Sequencer::new(vec![Box::new(stage)], false)))
     }
 }
 
 const FEWEST: usize = 4;
 
-/// L-SHADE as one batch-wise part (piece) of a strategy.
+/// L-SHADE as one batch-wise part (stage) of a strategy.
 struct LShade {
     settings: LShadeSettings,
     space: Space,
@@ -255,7 +218,7 @@ fn repair_bound(axis: &Axis, own: f64, mutant: f64) -> f64 {
     }
 }
 
-impl Piece for LShade {
+impl SearchStage for LShade {
     fn plan(&mut self, _archive: &Archive) -> Option<Batch> {
         let left = self.settings.evaluations.saturating_sub(self.planned);
         if left == 0 {

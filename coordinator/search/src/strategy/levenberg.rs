@@ -1,4 +1,4 @@
-//! Levenberg-Marquardt least squares as a piece (batch-wise part) of a strategy: descents on the residual
+//! Levenberg-Marquardt least squares as a stage (batch-wise part) of a strategy: descents on the residual
 //! vector from the best points so far.
 //!
 //! The residual of an individual, scaled so that its squared norm is the fitness, gives a derivative for
@@ -8,8 +8,8 @@ use super::{
     archive::{Archive, EvaluatedIndividual, Residual},
     family::DescentEnd,
     proposal::Purpose,
-    setting::{AllowedValues, Setting, SettingsError, check},
-    stage::{Batch, Piece, ProposalDraft},
+    setting::{AllowedValues, Setting, SettingsError, check, settings},
+    stage::{Batch, ProposalDraft, SearchStage},
 };
 use crate::{
     derivative::terms,
@@ -21,34 +21,34 @@ use crate::{
 use nalgebra::DVector;
 use serde::{Deserialize, Serialize};
 
-/// Settings of the least-squares descents.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct LevenbergSettings {
-    /// Number of concurrent descents, which start from the best points that are far enough apart.
-    pub starts: usize,
-    /// Maximum number of Jacobians computed per descent.
-    pub iterations: u32,
-    /// Minimum distance between two starts (coordinate), in at least one gene that counts: the gene with a
-    /// narrow minimum, or an unknown that can compensate for it (half of that unknown's shift); all genes
-    /// count if no minimum is narrow.
-    pub apart: f64,
-    /// First difference step (coordinate), for unknowns whose step the case does not state.
-    pub step: f64,
-    /// Maximum change of a gene in one least-squares step (coordinate).
-    pub longest: f64,
-    /// Damping added to each gene's own curvature in the normal equations, as a share of the mean curvature
-    /// over all genes.
-    pub level: f64,
-    /// Number of rounds between eliminations, each of which abandons the worse half of the descents.
-    pub heat: u32,
-    /// Number of descents that are never abandoned: two with nearly equal fitness may converge to different
-    /// minima.
-    pub keep: usize,
-    /// Source of the Jacobian columns.
-    pub derivatives: Derivatives,
-    /// Convergence tolerance of a descent.
-    pub finish: DescentTolerance,
+settings! {
+    /// Settings of the least-squares descents.
+    pub struct LevenbergSettings, pub(super) table SETTINGS {
+        pub starts: usize = "number of concurrent least-squares descents", AllowedValues::Whole(1, 1000);
+        pub iterations: u32 = "maximum number of Jacobians per descent", AllowedValues::Whole(1, 1000);
+        /// Minimum distance between two starts (coordinate), in at least one gene that counts: the gene with a
+        /// narrow minimum, or an unknown that can compensate for it (half of that unknown's shift); all genes
+        /// count if no minimum is narrow.
+        pub apart: f64 = "minimum distance between two starts in some gene [decade]", AllowedValues::Real(0.0, 10.0);
+        pub step: f64 = "first difference step [decade]", AllowedValues::Real(1e-9, 1.0);
+        pub longest: f64 = "maximum change of a gene in one step [decade]", AllowedValues::Real(1e-3, 100.0);
+        /// Damping added to each gene's own curvature in the normal equations, as a share of the mean curvature
+        /// over all genes.
+        pub level: f64 =
+            "additional damping as a share of the mean curvature, which keeps insensitive genes in place",
+            AllowedValues::Real(0.0, 1.0);
+        pub heat: u32 =
+            "rounds after which the worse half of the descents is abandoned",
+            AllowedValues::Whole(1, 1000);
+        /// Number of descents that are never abandoned: two with nearly equal fitness may converge to different
+        /// minima.
+        pub keep: usize = "number of descents that are never abandoned", AllowedValues::Whole(1, 1000);
+        pub derivatives: Derivatives =
+            "Jacobian columns: from one simulation where the model gives them, or by differences",
+            AllowedValues::Words(&["exact", "differences"]);
+        /// Convergence tolerance of a descent.
+        pub finish: DescentTolerance;
+    }
 }
 
 /// Number of rounds of steps between eliminations, each of which abandons the worse half of the descents.
@@ -73,54 +73,6 @@ pub enum Derivatives {
     Differences,
 }
 
-pub(super) const SETTINGS: &[Setting] = &[
-    Setting::new(
-        "starts",
-        AllowedValues::Whole(1, 1000),
-        "number of concurrent least-squares descents",
-    ),
-    Setting::new(
-        "iterations",
-        AllowedValues::Whole(1, 1000),
-        "maximum number of Jacobians per descent",
-    ),
-    Setting::new(
-        "apart",
-        AllowedValues::Real(0.0, 10.0),
-        "minimum distance between two starts in some gene [decade]",
-    ),
-    Setting::new(
-        "step",
-        AllowedValues::Real(1e-9, 1.0),
-        "first difference step [decade]",
-    ),
-    Setting::new(
-        "longest",
-        AllowedValues::Real(1e-3, 100.0),
-        "maximum change of a gene in one step [decade]",
-    ),
-    Setting::new(
-        "level",
-        AllowedValues::Real(0.0, 1.0),
-        "additional damping as a share of the mean curvature, which keeps insensitive genes in place",
-    ),
-    Setting::new(
-        "heat",
-        AllowedValues::Whole(1, 1000),
-        "rounds after which the worse half of the descents is abandoned",
-    ),
-    Setting::new(
-        "keep",
-        AllowedValues::Whole(1, 1000),
-        "number of descents that are never abandoned",
-    ),
-    Setting::new(
-        "derivatives",
-        AllowedValues::Words(&["exact", "differences"]),
-        "Jacobian columns: from one simulation where the model gives them, or by differences",
-    ),
-];
-
 /// Default convergence threshold on the gradient ratio ([`DECREASE`] is that on the relative decrease of the
 /// fitness). At 1e-2 and 1e-3 descents of the shipped records stopped up to 5 % above their minimum, along
 /// combinations of contact and stiffness.
@@ -130,7 +82,7 @@ const DECREASE: f64 = 3e-4;
 /// Typical number of rounds after which descents have converged; caps the estimate of the remaining rounds.
 const USUAL: u32 = 10;
 
-/// Least-squares descents as one batch-wise part (piece) of a strategy.
+/// Least-squares descents as one batch-wise part (stage) of a strategy.
 pub struct Levenberg {
     settings: LevenbergSettings,
     space: Space,
@@ -199,7 +151,7 @@ impl SpacingRule {
 }
 
 impl Levenberg {
-    /// Creates the least-squares piece from its settings.
+    /// Creates the least-squares stage from its settings.
     ///
     /// # Errors
     /// If a setting lies outside its range.
@@ -334,7 +286,7 @@ fn evaluated(space: &Space, one: &EvaluatedIndividual, wanted: bool) -> Option<E
     })
 }
 
-impl Piece for Levenberg {
+impl SearchStage for Levenberg {
     fn plan(&mut self, archive: &Archive) -> Option<Batch> {
         if self.searches.is_none() {
             self.searches = Some(self.begin(archive));

@@ -1,7 +1,7 @@
 //! Search strategies, and their common interface.
 //!
-//! A strategy is a sequence of *pieces*, its batch-wise parts (an initial design, a memetic search, a line
-//! scan, a refinement), each of which plans one batch of points at a time; the [`Conductor`] assigns ids to
+//! A strategy is a sequence of *stages*, its batch-wise parts (an initial design, a memetic search, a line
+//! scan, a refinement), each of which plans one batch of points at a time; the [`Sequencer`] assigns ids to
 //! the points, accepts the results in any order and passes them on in id order. One strategy needs no
 //! batches: [`memetic::window`].
 //!
@@ -16,7 +16,7 @@
 //! * it stays inside the bounds, and ends even if everything fails;
 //! * before its end it estimates the total number of evaluations, within about a third.
 //!
-//! Pieces run by the conductor obey the first requirement by construction.
+//! Stages run by the sequencer obey the first requirement by construction.
 pub mod archive;
 pub mod ask_tell;
 mod catalogue;
@@ -25,6 +25,8 @@ mod covariance;
 pub mod definition;
 mod design;
 mod evaluation_result;
+#[cfg(test)]
+mod expectations;
 pub mod family;
 pub mod l_shade;
 pub mod levenberg;
@@ -32,7 +34,6 @@ pub mod memetic;
 mod ordered_results;
 mod outcome;
 mod proposal;
-pub mod quick;
 pub mod random;
 pub mod refine;
 pub mod scan;
@@ -41,6 +42,7 @@ pub mod setting;
 pub mod settings;
 mod sobol;
 pub mod stage;
+pub mod staged;
 mod table;
 #[cfg(test)]
 mod tests;
@@ -54,8 +56,8 @@ pub use evaluation_result::EvaluationResult;
 pub use family::DescentEnd;
 pub use outcome::{Best, Finish, Progress};
 pub use proposal::{Proposal, Purpose};
-pub use sequencer::Conductor;
+pub use sequencer::Sequencer;
 pub use setting::SettingsError;
 pub use settings::{Settings, StrategySettings};
-pub use stage::{Batch, Piece, ProposalDraft};
+pub use stage::{Batch, ProposalDraft, SearchStage};
 pub use table::build_after;

@@ -68,7 +68,7 @@ impl Intake {
         self.archive.entries().get(index).cloned()
     }
 
-    /// Replaces the archive's groups of individuals from which the next piece may begin.
+    /// Replaces the archive's groups of individuals from which the next stage may begin.
     pub(super) fn set_start_groups(&mut self, start_groups: Vec<Vec<Vec<f64>>>) {
         self.archive.set_start_groups(start_groups);
     }

@@ -4,10 +4,10 @@
 //! (exactly one point in every part of every gene's interval), or a Sobol sequence.
 use super::{
     ask_tell::Strategy,
-    definition::{Expectations, Preset, SettingGroup},
+    definition::{Preset, SettingGroup},
     design::{Points, hypercube},
-    sequencer::Conductor,
-    setting::{AllowedValues, Setting, SettingsError, check, require},
+    sequencer::Sequencer,
+    setting::{AllowedValues, Setting, SettingsError, check, require, settings},
     settings::{Settings, StrategySettings, build_as},
     sobol,
 };
@@ -25,14 +25,6 @@ pub const RANDOM: Preset = Preset {
     settings: |_| Settings::of(&RandomSettings::thousand(Design::Chance)),
     groups: &[SettingGroup::whole(SETTINGS)],
     slots: 128,
-    expectations: Expectations {
-        one_basin: 1.5,
-        many_basins: 3.0,
-        distance: 1.5,
-        starts_at_recommended: false,
-        valley_evaluations: None,
-        seed_dependent: true,
-    },
     build: build_as::<RandomSettings>,
 };
 
@@ -52,31 +44,16 @@ pub const SOBOL: Preset = Preset {
     ..RANDOM
 };
 
-const SETTINGS: &[Setting] = &[
-    Setting::new("points", AllowedValues::Whole(1, 1_000_000), "individuals"),
-    Setting::new(
-        "within",
-        AllowedValues::Words(&["trust", "bounds"]),
-        "region of the draw: where simulations usually succeed, or the whole box",
-    ),
-    Setting::new(
-        "design",
-        AllowedValues::Words(&["chance", "hypercube", "sobol"]),
-        "sampling design",
-    ),
-];
-
-/// Settings of the uniform sampling: number of individuals, sampled region, and design.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct RandomSettings {
-    /// Number of individuals to sample.
-    pub points: usize,
-    /// Region of the box of genes that is sampled.
-    pub within: Within,
-    /// Sampling design: independent points, Latin hypercube or Sobol sequence.
-    #[serde(default)]
-    pub design: Design,
+settings! {
+    /// Settings of the uniform sampling: number of individuals, sampled region, and design.
+    pub struct RandomSettings, table SETTINGS {
+        pub points: usize = "individuals", AllowedValues::Whole(1, 1_000_000);
+        pub within: Within =
+            "region of the draw: where simulations usually succeed, or the whole box",
+            AllowedValues::Words(&["trust", "bounds"]);
+        #[serde(default)]
+        pub design: Design = "sampling design", AllowedValues::Words(&["chance", "hypercube", "sobol"]);
+    }
 }
 
 impl RandomSettings {
@@ -144,8 +121,8 @@ impl StrategySettings for RandomSettings {
                 scale_to_box(&intervals, sobol::sobol(self.points, &shifts).into_iter())
             }
         };
-        let piece = Points::new(space, &points);
-        Ok(Box::new(Conductor::new(vec![Box::new(piece)], false)))
+        let stage = Points::new(space, &points);
+        Ok(Box::new(Sequencer::new(vec![Box::new(stage)], false)))
     }
 }
 

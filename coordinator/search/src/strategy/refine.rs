@@ -6,8 +6,8 @@ use super::{
     archive::{Archive, EvaluatedIndividual},
     covariance::{Distribution, normal, ranked},
     proposal::Purpose,
-    setting::{AllowedValues, Setting, SettingsError, check, require},
-    stage::{Batch, Piece, ProposalDraft},
+    setting::{AllowedValues, Setting, SettingsError, check, require, settings},
+    stage::{Batch, ProposalDraft, SearchStage},
 };
 use crate::{
     random::{Phase, Streams},
@@ -16,16 +16,14 @@ use crate::{
 use nalgebra::DVector;
 use serde::{Deserialize, Serialize};
 
-/// Settings of a local refinement.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct RefineSettings {
-    /// Number of points that the refinement evaluates per round, at least 4.
-    pub batch: usize,
-    /// Number of rounds of the refinement.
-    pub rounds: u32,
-    /// Initial standard deviation of each gene (coordinate); 0 keeps a gene fixed.
-    pub spread: Vec<f64>,
+settings! {
+    /// Settings of a local refinement.
+    pub struct RefineSettings, pub(super) table SETTINGS {
+        pub batch: usize = "points per round of the refinement", AllowedValues::Whole(4, 100_000);
+        pub rounds: u32 = "rounds of the refinement", AllowedValues::Whole(0, 100_000);
+        /// Initial standard deviation of each gene (coordinate); 0 keeps a gene fixed.
+        pub spread: Vec<f64>;
+    }
 }
 
 impl RefineSettings {
@@ -39,20 +37,7 @@ impl RefineSettings {
     }
 }
 
-pub(super) const SETTINGS: &[Setting] = &[
-    Setting::new(
-        "batch",
-        AllowedValues::Whole(4, 100_000),
-        "points per round of the refinement",
-    ),
-    Setting::new(
-        "rounds",
-        AllowedValues::Whole(0, 100_000),
-        "rounds of the refinement",
-    ),
-];
-
-/// Local refinement as one batch-wise part (piece) of a strategy.
+/// Local refinement as one batch-wise part (stage) of a strategy.
 pub struct Refine {
     settings: RefineSettings,
     space: Space,
@@ -109,7 +94,7 @@ impl Refine {
     }
 }
 
-impl Piece for Refine {
+impl SearchStage for Refine {
     fn plan(&mut self, archive: &Archive) -> Option<Batch> {
         if self.round >= self.settings.rounds || self.moving.is_empty() {
             self.round = self.settings.rounds;

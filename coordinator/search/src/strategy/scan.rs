@@ -5,8 +5,8 @@
 use super::{
     archive::{Archive, EvaluatedIndividual},
     proposal::Purpose,
-    setting::{AllowedValues, Setting, SettingsError, check, require},
-    stage::{Batch, Piece, ProposalDraft},
+    setting::{AllowedValues, Setting, SettingsError, check, require, settings},
+    stage::{Batch, ProposalDraft, SearchStage},
 };
 use crate::space::Space;
 use serde::{Deserialize, Serialize};
@@ -51,27 +51,25 @@ pub struct Line {
     pub share: Option<Share>,
 }
 
-/// Settings of a line scan.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ScanSettings {
-    /// Index of the scanned axis.
-    pub axis: usize,
-    /// Centre of the scan's grid along the scanned axis.
-    pub center: Center,
-    /// Distance from the centre of the grid down to its lowest station (coordinate).
-    pub below: f64,
-    /// Distance from the centre of the grid up to its highest station (coordinate).
-    pub above: f64,
-    /// Spacing of the stations (coordinate); a minimum narrower than twice the spacing may be missed.
-    pub step: f64,
-    /// Number of best points of the search so far about which lines are scanned.
-    pub points: usize,
-    /// Minimum distance between the base points of the scan, along at least one axis other than the scanned
-    /// one (coordinate).
-    pub apart: f64,
-    /// Scan lines through each base point, or offset from it; at least one.
-    pub lines: Vec<Line>,
+settings! {
+    /// Settings of a line scan.
+    pub struct ScanSettings, pub(super) table SETTINGS {
+        /// Index of the scanned axis.
+        pub axis: usize;
+        /// Centre of the scan's grid along the scanned axis.
+        pub center: Center;
+        pub below: f64 = "how far below its centre the scan begins [decade]", AllowedValues::Real(0.0, 10.0);
+        pub above: f64 = "how far above its centre the scan ends [decade]", AllowedValues::Real(0.0, 10.0);
+        pub step: f64 =
+            "spacing of the scan [decade]; a valley narrower than twice this may be missed",
+            AllowedValues::Real(2e-4, 1.0);
+        pub points: usize = "how many of the best points are scanned", AllowedValues::Whole(1, 1000);
+        /// Minimum distance between the base points of the scan, along at least one axis other than the scanned
+        /// one (coordinate).
+        pub apart: f64;
+        /// Scan lines through each base point, or offset from it; at least one.
+        pub lines: Vec<Line>;
+    }
 }
 
 impl ScanSettings {
@@ -130,30 +128,7 @@ impl ScanSettings {
     }
 }
 
-pub(super) const SETTINGS: &[Setting] = &[
-    Setting::new(
-        "below",
-        AllowedValues::Real(0.0, 10.0),
-        "how far below its centre the scan begins [decade]",
-    ),
-    Setting::new(
-        "above",
-        AllowedValues::Real(0.0, 10.0),
-        "how far above its centre the scan ends [decade]",
-    ),
-    Setting::new(
-        "step",
-        AllowedValues::Real(2e-4, 1.0),
-        "spacing of the scan [decade]; a valley narrower than twice this may be missed",
-    ),
-    Setting::new(
-        "points",
-        AllowedValues::Whole(1, 1000),
-        "how many of the best points are scanned",
-    ),
-];
-
-/// Line scan as one batch-wise part (piece) of a strategy.
+/// Line scan as one batch-wise part (stage) of a strategy.
 pub struct Scan {
     settings: ScanSettings,
     space: Space,
@@ -208,7 +183,7 @@ impl Scan {
     }
 }
 
-impl Piece for Scan {
+impl SearchStage for Scan {
     fn plan(&mut self, archive: &Archive) -> Option<Batch> {
         if std::mem::replace(&mut self.done, true) {
             return None;

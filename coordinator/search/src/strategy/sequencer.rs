@@ -1,7 +1,7 @@
-//! Sequential execution of the pieces (batch-wise parts) of a strategy: assigns ids, restores the order of
+//! Sequential execution of the stages (batch-wise parts) of a strategy: assigns ids, restores the order of
 //! results, reuses results of identical individuals.
 //!
-//! The conductor knows batches, not algorithms. Its state is a function of the longest unbroken run of
+//! The sequencer knows batches, not algorithms. Its state is a function of the longest unbroken run of
 //! results from id 0; later results wait in a buffer.
 use super::{
     archive::{Archive, EvaluatedIndividual, Residual, key},
@@ -11,13 +11,13 @@ use super::{
     ordered_results::Intake,
     outcome::{Best, Finish, Progress},
     proposal::Proposal,
-    stage::{Batch, Piece, ProposalDraft},
+    stage::{Batch, ProposalDraft, SearchStage},
 };
 use std::collections::{BTreeMap, VecDeque};
 
-/// Strategy that executes a sequence of pieces (batch-wise parts), one after another.
-pub struct Conductor {
-    pieces: VecDeque<Box<dyn Piece>>,
+/// Strategy that executes a sequence of stages (batch-wise parts), one after another.
+pub struct Sequencer {
+    stages: VecDeque<Box<dyn SearchStage>>,
     /// Whether a repeated individual takes its known result instead of being evaluated again.
     reuse_clones: bool,
     intake: Intake,
@@ -25,21 +25,21 @@ pub struct Conductor {
     slots: Vec<u64>,
     outbox: Vec<Proposal>,
     residuals: BTreeMap<u64, Residual>,
-    /// Ends of the descents of the completed pieces that converged.
+    /// Ends of the descents of the completed stages that converged.
     descent_ends: Vec<DescentEnd>,
     next_id: u64,
     generation: u32,
-    /// Number of generations of the completed pieces.
+    /// Number of generations of the completed stages.
     generations_done: u32,
     finish: Option<Finish>,
 }
 
-impl Conductor {
-    /// Creates a strategy that executes these pieces in order. `reuse_clones` saves evaluations where pieces
+impl Sequencer {
+    /// Creates a strategy that executes these stages in order. `reuse_clones` saves evaluations where stages
     /// propose an individual again; as evaluations are pure, it changes no result.
-    pub fn new(pieces: Vec<Box<dyn Piece>>, reuse_clones: bool) -> Self {
-        let mut conductor = Self {
-            pieces: pieces.into(),
+    pub fn new(stages: Vec<Box<dyn SearchStage>>, reuse_clones: bool) -> Self {
+        let mut sequencer = Self {
+            stages: stages.into(),
             reuse_clones,
             intake: Intake::default(),
             slots: Vec::new(),
@@ -51,33 +51,33 @@ impl Conductor {
             generations_done: 0,
             finish: None,
         };
-        conductor.advance();
-        conductor
+        sequencer.advance();
+        sequencer
     }
 
-    /// Plans batches of the pieces until a batch needs an evaluation or no piece is left.
+    /// Plans batches of the stages until a batch needs an evaluation or no stage is left.
     fn advance(&mut self) {
         while self.finish.is_none() && self.intake.awaited() == 0 {
             self.close_batch();
-            let Some(piece) = self.pieces.front_mut() else {
+            let Some(stage) = self.stages.front_mut() else {
                 self.finish = Some(Finish::Planned);
                 return;
             };
-            if piece.reached_threshold() {
+            if stage.reached_threshold() {
                 self.finish = Some(Finish::Threshold);
-            } else if let Some(batch) = piece.plan(self.intake.archive()) {
+            } else if let Some(batch) = stage.plan(self.intake.archive()) {
                 self.open_batch(batch);
             } else {
-                self.generations_done += piece.generations();
-                self.descent_ends.extend(piece.descent_ends());
-                let groups = piece.start_groups(self.intake.archive());
+                self.generations_done += stage.generations();
+                self.descent_ends.extend(stage.descent_ends());
+                let groups = stage.start_groups(self.intake.archive());
                 self.intake.set_start_groups(groups);
-                self.pieces.pop_front();
+                self.stages.pop_front();
             }
         }
     }
 
-    /// Passes the results of the finished batch, if any, to the piece that planned it.
+    /// Passes the results of the finished batch, if any, to the stage that planned it.
     fn close_batch(&mut self) {
         if self.slots.is_empty() {
             return;
@@ -85,8 +85,8 @@ impl Conductor {
         let slots = std::mem::take(&mut self.slots);
         let results: Vec<EvaluatedIndividual> =
             slots.iter().filter_map(|id| self.result(*id)).collect();
-        if let Some(piece) = self.pieces.front_mut() {
-            piece.absorb(&results);
+        if let Some(stage) = self.stages.front_mut() {
+            stage.absorb(&results);
         }
     }
 
@@ -134,7 +134,7 @@ impl Conductor {
     }
 }
 
-impl Strategy for Conductor {
+impl Strategy for Sequencer {
     fn ask(&mut self) -> Vec<Proposal> {
         std::mem::take(&mut self.outbox)
     }
@@ -153,10 +153,10 @@ impl Strategy for Conductor {
     }
 
     fn anticipate(&self) -> Vec<ProposalDraft> {
-        let Some(piece) = self.pieces.front() else {
+        let Some(stage) = self.stages.front() else {
             return Vec::new();
         };
-        piece.anticipate(&|index| self.result(*self.slots.get(index)?))
+        stage.anticipate(&|index| self.result(*self.slots.get(index)?))
     }
 
     fn finished(&self) -> Option<Finish> {
@@ -165,7 +165,7 @@ impl Strategy for Conductor {
 
     fn progress(&self) -> Progress {
         let evaluations = self.intake.archive().entries().len() as u64;
-        let remaining: u64 = self.pieces.iter().map(|piece| piece.remaining()).sum();
+        let remaining: u64 = self.stages.iter().map(|stage| stage.remaining()).sum();
         let consumed = self.next_id - self.intake.awaited();
         let batch_done = self.slots.iter().filter(|id| **id < consumed).count() as u64;
         let ahead = match self.finish {
@@ -178,9 +178,9 @@ impl Strategy for Conductor {
             generation: self.generation,
             generations: self.generations_done
                 + self
-                    .pieces
+                    .stages
                     .iter()
-                    .map(|piece| piece.generations())
+                    .map(|stage| stage.generations())
                     .sum::<u32>(),
             evaluations,
             expected_evaluations: evaluations + ahead,

@@ -173,6 +173,37 @@ impl Setting {
     }
 }
 
+/// Declares the settings of a strategy and the table of those that can be set by name. A field with a meaning and allowed
+/// values stands in the table, under its own name; a call such as `optional("none")` behind them changes its entry.
+macro_rules! settings {
+    (
+        $(#[$meta:meta])*
+        $vis:vis struct $name:ident, $table_vis:vis table $table:ident {
+            $(
+                $(#[$field_meta:meta])*
+                $field_vis:vis $field:ident: $type:ty
+                $(= $meaning:literal, $values:expr $(, $method:ident($($argument:expr)?))?)?;
+            )*
+        }
+    ) => {
+        $(#[$meta])*
+        #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+        #[serde(deny_unknown_fields)]
+        $vis struct $name {
+            $(
+                $(#[$field_meta])*
+                $(#[doc = ""] #[doc = concat!("`", $meaning, "`")])?
+                $field_vis $field: $type,
+            )*
+        }
+
+        $table_vis const $table: &[Setting] = &[
+            $($(Setting::new(stringify!($field), $values, $meaning)$(.$method($($argument)?))?,)?)*
+        ];
+    };
+}
+pub(super) use settings;
+
 /// Checks a strategy's settings against their table of allowed values.
 ///
 /// # Errors

@@ -209,7 +209,7 @@ mod tests {
         strategy::{
             catalogue::{CATALOGUE, preset},
             family,
-            quick::{self, QuickSettings},
+            staged::{self, StagedSettings},
             tests::{run_on, run_with, settings},
         },
         test_function::SPHERE,
@@ -318,9 +318,9 @@ mod tests {
                 fitness: residual(genes).iter().map(|r| r * r).sum(),
                 complete: true,
             };
-            let mut quick = QuickSettings::quick(&space);
+            let mut quick = StagedSettings::quick(&space);
             quick.parts.truncate(2);
-            if let Some(quick::SearchPart::LeastSquares(race)) = quick.parts.last_mut() {
+            if let Some(staged::StageSettings::LeastSquares(race)) = quick.parts.last_mut() {
                 (race.heat, race.iterations) = (100, 50);
             }
             // a table of first individuals hides nothing of what the search finds

@@ -1,5 +1,5 @@
 //! Requirements that every preset of the catalogue fulfils.
-use super::{memetic::MemeticSettings, quick::QuickSettings, *};
+use super::{memetic::MemeticSettings, staged::StagedSettings, *};
 use crate::{
     random::{Phase, Stream, Streams},
     space::Space,
@@ -200,7 +200,8 @@ fn the_seed_decides_and_ids_are_consecutive() {
         let other = run_preset(preset, &SPHERE, 6, None);
         let differs = one.asked != other.asked;
         assert_eq!(
-            differs, preset.expectations.seed_dependent,
+            differs,
+            expectations::of(preset.name).seed_dependent,
             "{}",
             preset.name
         );
@@ -259,7 +260,7 @@ fn bounds_are_never_left_and_the_recommended_individual_opens_a_quick_search() {
                 assert!(bounds.contains(value), "{}", preset.name);
             }
         }
-        if preset.expectations.starts_at_recommended {
+        if expectations::of(preset.name).starts_at_recommended {
             for x in space.point(&record.asked[0].genes) {
                 assert!(x.abs() < 5e-5, "{x}");
             }
@@ -352,14 +353,14 @@ fn every_preset_finds_the_minima_that_it_promises_to_find() {
         for function in [SPHERE, test_function::CLIFF] {
             let (found, name) = (best(function), function.name);
             assert!(
-                found < preset.expectations.one_basin,
+                found < expectations::of(preset.name).one_basin,
                 "{} {name}: {found}",
                 preset.name
             );
         }
         let found = best(test_function::RASTRIGIN);
         assert!(
-            found < preset.expectations.many_basins,
+            found < expectations::of(preset.name).many_basins,
             "{}: {found}",
             preset.name
         );
@@ -402,7 +403,7 @@ fn linear_axes_are_searched_like_logarithmic_ones() {
         for (x, wanted) in space.point(found).iter().zip(space.point(&minimum)) {
             let far = (x - wanted).abs();
             assert!(
-                far < preset.expectations.distance,
+                far < expectations::of(preset.name).distance,
                 "{}: {found:?}",
                 preset.name
             );
@@ -422,7 +423,7 @@ fn settings_outside_their_range_are_refused_by_name() {
         error.to_string(),
         "crossover_probability is 1.5, but must be 0 to 1"
     );
-    let mut quick = QuickSettings::quick(&space);
+    let mut quick = StagedSettings::quick(&space);
     quick.trust.pop();
     assert!(build(&Settings::of(&quick), &space, 0).is_err());
 }
@@ -439,7 +440,7 @@ fn refining_presets_enter_the_valley_wherever_it_lies() {
         &[0.511, 0.3, 0.1, 0.0, 1.4, 1.0, 0.0, 0.6, 2.7, 0.2],
     ];
     for preset in CATALOGUE {
-        let Some(most) = preset.expectations.valley_evaluations else {
+        let Some(most) = expectations::of(preset.name).valley_evaluations else {
             continue;
         };
         let (mut found, mut runs) = (0, 0);

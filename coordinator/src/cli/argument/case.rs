@@ -1,9 +1,9 @@
 //! Arguments that name a case folder and its measured records, and loading of that case.
-use crate::cli::{output::terminal, run::manifest::Start};
 use case::{Overrides, load_with_notes};
 use clap::Args;
 use protocol::case::Case;
 use record::Record;
+use run::{manifest::StartPoint, message};
 use std::{
     convert::Infallible,
     path::{Path, PathBuf},
@@ -55,7 +55,7 @@ impl CaseChoice {
     pub(crate) fn load_at(
         &self,
         genes: Option<&Path>,
-    ) -> anyhow::Result<(LoadedCase, Option<Start>)> {
+    ) -> anyhow::Result<(LoadedCase, Option<StartPoint>)> {
         load_case_at(&self.case, self.measured.as_deref(), genes)
     }
 }
@@ -71,15 +71,15 @@ pub(crate) fn load_case_at(
     folder: &Path,
     measured: Option<&Path>,
     genes: Option<&Path>,
-) -> anyhow::Result<(LoadedCase, Option<Start>)> {
+) -> anyhow::Result<(LoadedCase, Option<StartPoint>)> {
     let overrides = Overrides {
         measured: measured.map(Path::to_owned),
     };
     let mut loaded = load_with_notes(folder, &overrides)?;
-    let start = genes.map(|file| Start::read(file, &mut loaded));
+    let start = genes.map(|file| StartPoint::read(file, &mut loaded));
     let start = start.transpose()?;
     let notes: Vec<String> = loaded.notes.iter().map(ToString::to_string).collect();
-    terminal::note(&notes);
+    message::print_notes(&notes);
     let measured = measured.unwrap_or(folder).display().to_string();
     let case = LoadedCase {
         case: loaded.case,

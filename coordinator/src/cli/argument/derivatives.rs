@@ -1,7 +1,7 @@
 //! Parsing of `--derivatives`: names of the unknowns and effect parameters by which a simulation is
 //! differentiated.
-use crate::cli::output::problem::Problem;
 use protocol::{case::Case, job::Column};
+use support::Problem;
 
 const ALL: &str = "all";
 

@@ -1,8 +1,8 @@
 //! Arguments that select the parameter values to simulate and the working condition.
-use crate::cli::output::problem::Problem;
 use clap::Args;
 use protocol::case::Case;
 use std::path::Path;
+use support::Problem;
 
 /// Parameters to simulate, and the working condition.
 #[derive(Clone, Debug, Args)]

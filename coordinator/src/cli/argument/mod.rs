@@ -1,7 +1,6 @@
 //! Arguments shared by several commands, one kind per file.
 pub(crate) mod case;
 pub(super) mod derivatives;
-pub(super) mod factor;
 pub(crate) mod individual;
 pub(super) mod individuals;
 pub(super) mod listening;

@@ -1,7 +1,7 @@
 //! Worker arguments: worker processes on this machine, and workers of other machines that connect over the
 //! network.
 use super::{
-    listening::RemoteAccess,
+    listening::ListenChoice,
     nodes::{HostsChoice, LaunchChoice},
 };
 use clap::{
@@ -9,7 +9,9 @@ use clap::{
     builder::{RangedU64ValueParser, TypedValueParser},
 };
 use dispatch::runtime::PAUSE_LIMIT;
+use run::session::{RunOptions, launch::RemoteWorkers};
 use std::time::Duration;
+use support::Problem;
 
 /// Arguments that select the workers of a run.
 #[derive(Clone, Debug, Args)]
@@ -31,7 +33,7 @@ pub(crate) struct WorkersChoice {
         default_missing_value = "7450",
         env = "HORSEHEAD_DASHBOARD"
     )]
-    pub(crate) dashboard: Option<u16>,
+    dashboard: Option<u16>,
     // the last, because its heading stays in force
     #[command(flatten)]
     pub(crate) remote: RemoteChoice,
@@ -42,15 +44,15 @@ pub(crate) struct WorkersChoice {
 #[command(next_help_heading = "Workers on other machines")]
 pub(crate) struct RemoteChoice {
     #[command(flatten)]
-    pub(crate) door: RemoteAccess,
+    listen: ListenChoice,
     #[command(flatten)]
-    pub(crate) hosts: HostsChoice,
+    hosts: HostsChoice,
     /// Name or address under which the ssh hosts reach this machine [default: the one from which the first of
     /// them says that we come].
     #[arg(long, value_name = "ADDRESS", env = "HORSEHEAD_ADVERTISE")]
-    pub(crate) advertise: Option<String>,
+    advertise: Option<String>,
     #[command(flatten)]
-    pub(crate) launch: LaunchChoice,
+    launch: LaunchChoice,
 }
 
 impl WorkersChoice {
@@ -59,17 +61,46 @@ impl WorkersChoice {
         self.workers.unwrap_or_else(cores)
     }
 
-    /// Returns how long the run waits for room on its disk, or for new workers, before it ends.
-    pub(crate) fn pause_limit(&self) -> Duration {
+    /// Returns the options of a session with these workers.
+    ///
+    /// # Errors
+    /// As [`RemoteChoice::workers`].
+    pub(crate) fn session(&self) -> Result<RunOptions, Problem> {
         let minutes = |minutes: u32| Duration::from_secs(60 * u64::from(minutes));
-        self.pause_limit.map_or(PAUSE_LIMIT, minutes)
+        Ok(RunOptions {
+            local_workers: self.local(),
+            pause_limit: self.pause_limit.map_or(PAUSE_LIMIT, minutes),
+            dashboard: self.dashboard,
+            remote: self.remote.workers()?,
+        })
     }
 }
 
 impl RemoteChoice {
     /// Returns whether the arguments let workers on other machines take part.
     pub(crate) const fn has_others(&self) -> bool {
-        self.door.listen.is_some() || !self.hosts.is_empty()
+        self.listen.is_open() || !self.hosts.is_empty()
+    }
+
+    /// Returns the workers of other machines that the arguments name.
+    ///
+    /// # Errors
+    /// If the file of hosts, or that of shell lines, cannot be read.
+    pub(crate) fn workers(&self) -> Result<RemoteWorkers, Problem> {
+        let hosts = self.hosts.read()?;
+        Ok(RemoteWorkers {
+            access: self.listen.access(),
+            advertise: self.advertise.clone(),
+            slots: self.launch.slots,
+            programs: self.launch.worker_program.clone(),
+            // who launches nothing needs no file of shell lines
+            prologue: if hosts.is_empty() {
+                String::new()
+            } else {
+                self.launch.prologue()?
+            },
+            hosts,
+        })
     }
 }
 

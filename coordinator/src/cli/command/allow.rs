@@ -1,17 +1,15 @@
 //! `horsehead allow`: permits this machine to start the external program of a case.
 use crate::cli::{
     argument::{case::case_folder, output::OutputChoice},
-    output::{
-        problem::{EXIT_CODES, Problem},
-        terminal,
-    },
+    output::{problem::EXIT_CODES, terminal},
 };
 use case::command::{EntryProposal, propose_entry};
 use clap::Args;
 use exchange::allow::{self, Allowed};
+use run::message;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
-use support::atomic_file;
+use support::{Problem, atomic_file};
 
 /// Let this machine start the program of a case.
 #[derive(Debug, Args)]
@@ -108,7 +106,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
             .into());
         }
         if own.files != entry.files {
-            terminal::tell(&format!(
+            message::print(&format!(
                 "note: entry `{name}` was allowed for other files until now; another case that uses it needs an \
                  entry of its own"
             ));

@@ -9,28 +9,29 @@ use crate::cli::{
     },
     output::{
         calibration::show,
-        problem::{EXIT_CODES, Problem},
+        problem::EXIT_CODES,
         progress::{Display, Silent},
-        terminal,
-    },
-    run::{
-        calibration::{Calibration, calibrate, identifiability},
-        manifest::{self, DEFAULT_PRESET, FirstTable, Manifest, Start},
-        name::RunName,
-        opened::Run,
-        session::Session,
     },
 };
 use anyhow::Context as _;
 use case::require_record;
 use clap::{Args, builder::PossibleValuesParser};
 use protocol::case::Case;
+use run::{
+    calibration::{CalibrationRun, calibrate, identifiability},
+    manifest::{self, DEFAULT_PRESET, FirstTable, Manifest, StartPoint},
+    message,
+    name::RunName,
+    opened::Run,
+    session::Session,
+};
 use search::{
     space::Space,
     strategy::{CATALOGUE, SearchPlan, Settings, build_after, preset},
 };
 use std::path::{Path, PathBuf};
 use study::{Entry, Evaluator as _, Watch as _};
+use support::Problem;
 
 /// Fit the unknowns of a case to its records; the same command resumes.
 #[derive(Debug, Args)]
@@ -102,7 +103,7 @@ fn planned_workers(workers: &WorkersChoice) -> usize {
 ///
 /// # Errors
 /// If a starting value lies outside its bounds.
-fn searched(case: &Case, start: Option<&Start>) -> Result<Space, Problem> {
+fn searched(case: &Case, start: Option<&StartPoint>) -> Result<Space, Problem> {
     manifest::space(case, start).map_err(|error| Problem {
         message: match start {
             Some(start) => format!("{}: {error}", start.file.display()),
@@ -144,7 +145,7 @@ fn check_table(
 }
 
 /// Creates the run of the requested calibration, or opens it to resume.
-fn begin(arguments: &Arguments) -> anyhow::Result<Calibration> {
+fn begin(arguments: &Arguments) -> anyhow::Result<CalibrationRun> {
     let (loaded, start) = arguments.choice.load_at(arguments.genes.as_deref())?;
     let LoadedCase {
         case,
@@ -165,14 +166,14 @@ fn begin(arguments: &Arguments) -> anyhow::Result<Calibration> {
     choice
         .set
         .extend(window.map(|length| ("window".to_owned(), length)));
-    let mut chosen = choice.choose(preset, &plan)?;
+    let mut chosen = run::settings::choose(&choice.set, preset, &plan)?;
     let mut table = first_table(arguments.start.as_deref(), &space)?;
     let path = if let Some(path) = &arguments.run {
         path.clone()
     } else {
         let mut decides = chosen.set.clone();
         decides.extend(table.as_ref().map(FirstTable::word).transpose()?);
-        decides.extend(start.as_ref().map(Start::word).transpose()?);
+        decides.extend(start.as_ref().map(StartPoint::word).transpose()?);
         let name = RunName {
             case_folder: &arguments.choice.case,
             case: &case,
@@ -183,9 +184,9 @@ fn begin(arguments: &Arguments) -> anyhow::Result<Calibration> {
         };
         name.path()?
     };
-    let earlier = Calibration::open(&path).ok().map(|run| run.manifest);
-    let settings = earlier.as_ref().map(|earlier| &earlier.settings);
-    choice.keep_worker_dependent(&mut chosen, preset, settings);
+    let earlier = CalibrationRun::open(&path).ok().map(|run| run.manifest);
+    let earlier_settings = earlier.as_ref().map(|earlier| &earlier.settings);
+    run::settings::keep_worker_dependent(&choice.set, &mut chosen, preset, earlier_settings);
     // its file is not needed again
     table = table.or_else(|| earlier.and_then(|earlier| earlier.table));
     check_table(table.as_ref(), &chosen.settings, &space, arguments.seed)?;
@@ -204,33 +205,39 @@ fn begin(arguments: &Arguments) -> anyhow::Result<Calibration> {
 
 /// Runs the calibration from the first proposal to the report.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let session = Session::begin(&arguments.workers);
+    let session = Session::begin();
     let run = begin(arguments)?;
     if run.lost_journal() {
-        terminal::tell(&format!(
+        message::print(&format!(
             "warning: the journal of {} is missing or empty, so earlier results are lost: the run starts \
              again",
             run.folder.path().display()
         ));
     }
-    session.work(&run, async |dispatch, stop| {
-        let mut display = Display::new(run.case.objective_unit()).of_preset(&run.manifest.preset);
-        display.resumed(dispatch.recorded());
-        let found = calibrate(dispatch, &run, &mut display, stop).await;
-        display.clear();
-        let best = found?.calibrated.best.genes;
-        let seen = identifiability(dispatch, &run, &best, &mut Silent, stop).await?;
-        let estimates = seen.as_ref().map(|seen| seen.unknowns.clone());
-        dispatch.enter(&Entry::Estimated(estimates.unwrap_or_default()))?;
-        let file = seen.and_then(|seen| {
-            let unknowns: Vec<&str> = seen.unknowns.iter().map(|own| own.name.as_str()).collect();
-            let kind = case::kind::of(&run.case);
-            kind.jacobian_file(&run.case, &unknowns, &seen.channels, &seen.derivatives)
-        });
-        if let Some((name, bytes)) = file {
-            run.folder.write(name, &bytes)?;
-        }
-        Ok(())
-    })?;
+    session.work(
+        &run,
+        &arguments.workers.session()?,
+        async |dispatch, stop| {
+            let mut display =
+                Display::new(run.case.objective_unit()).of_preset(&run.manifest.preset);
+            display.resumed(dispatch.recorded());
+            let found = calibrate(dispatch, &run, &mut display, stop).await;
+            display.clear();
+            let best = found?.calibrated.best.genes;
+            let seen = identifiability(dispatch, &run, &best, &mut Silent, stop).await?;
+            let estimates = seen.as_ref().map(|seen| seen.unknowns.clone());
+            dispatch.enter(&Entry::Estimated(estimates.unwrap_or_default()))?;
+            let file = seen.and_then(|seen| {
+                let unknowns: Vec<&str> =
+                    seen.unknowns.iter().map(|own| own.name.as_str()).collect();
+                let kind = case::kind::of(&run.case);
+                kind.jacobian_file(&run.case, &unknowns, &seen.channels, &seen.derivatives)
+            });
+            if let Some((name, bytes)) = file {
+                run.folder.write(name, &bytes)?;
+            }
+            Ok(())
+        },
+    )?;
     show(&run, session.wall_s(&run), arguments.output.output)
 }

@@ -1,22 +1,19 @@
 //! `horsehead case`: checks a case folder, writes a template, or imports a PEST control file.
 use crate::cli::{
     argument::{case::CaseChoice, output::OutputChoice},
-    output::{
-        problem::{EXIT_CODES, Problem},
-        terminal,
-    },
-    run::temporary::with_temporary_run,
+    output::{problem::EXIT_CODES, terminal},
 };
 use case::command::{self, EntryProposal};
 use case::{CaseError, Overrides, effect::check_known, load_with_notes, source::document};
 use clap::{Args, Subcommand};
+use run::{message, session::temporary::with_temporary_run};
 use serde::Serialize;
 use std::{
     collections::BTreeMap,
     path::{Path, PathBuf},
 };
 use study::{self, StudyError};
-use support::atomic_file;
+use support::{Problem, atomic_file};
 
 /// Check a case folder, or begin a new one.
 #[derive(Debug, Args)]
@@ -172,7 +169,7 @@ fn import(control: &Path, folder: Option<&Path>, output: OutputChoice) -> anyhow
         observations,
         notes: imported.notes.clone(),
     };
-    terminal::note(&object.notes);
+    message::print_notes(&object.notes);
     // what was written is read as every command will read it; a folder that none can read would block the next try
     let read = |folder: &Path| -> anyhow::Result<EntryProposal> {
         case::check(folder, &Overrides::default())?;
@@ -180,7 +177,7 @@ fn import(control: &Path, folder: Option<&Path>, output: OutputChoice) -> anyhow
     };
     let proposal = read(&imported.folder).map_err(|error| {
         drop(std::fs::remove_dir_all(&imported.folder));
-        terminal::tell(&format!(
+        message::print(&format!(
             "note: no case was made, and {} was removed again: correct the files beside {}, then import it again",
             imported.folder.display(),
             control.display()
@@ -206,7 +203,7 @@ fn import(control: &Path, folder: Option<&Path>, output: OutputChoice) -> anyhow
             "this machine has no program `{}`: install it here, or run `horsehead allow` on the machines that have it",
             proposal.entry.program.display()
         );
-        terminal::note(std::slice::from_ref(&note));
+        message::print_notes(std::slice::from_ref(&note));
         object.notes.push(note);
     }
     let EntryProposal { name, entry, .. } = proposal;
@@ -243,9 +240,9 @@ fn write_template(folder: &Path) -> anyhow::Result<()> {
             message: format!("cannot write {}: {error}", file.display()),
             remedy: "choose a folder that can be written".to_owned(),
         })?;
-        terminal::tell(&format!("wrote {}", file.display()));
+        message::print(&format!("wrote {}", file.display()));
     }
-    terminal::tell(&format!(
+    message::print(&format!(
         "put the files it names beside it, then run `horsehead case check {}`",
         folder.display()
     ));

@@ -1,14 +1,13 @@
 //! `horsehead dashboard`: shows runs in a browser, live and finished.
-use crate::cli::{
-    dashboard::{DEFAULT_PORT, FolderPages, RunPages, listen, listen_near, token},
-    output::{
-        problem::{EXIT_CODES, Problem},
-        terminal,
-    },
-    run::{dispatcher, folder::RunFolder, interrupt},
-};
+use crate::cli::output::{problem::EXIT_CODES, terminal};
 use clap::Args;
+use dashboard::{DEFAULT_PORT, FolderPages, RunPages, listen, listen_near, token};
 use dashboard::{Pages, serve};
+use run::{
+    folder::RunFolder,
+    message,
+    session::{dispatcher, interrupt},
+};
 use std::{
     io::Read as _,
     net::{IpAddr, Ipv4Addr, TcpListener},
@@ -18,6 +17,7 @@ use std::{
     time::{Duration, Instant},
 };
 use study::Stop;
+use support::Problem;
 use tokio::sync::watch;
 
 /// Show a run, or a folder of runs, in a browser: while it goes on, and afterwards.
@@ -81,10 +81,10 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let url = format!("http://{address}/?token={token}");
     terminal::write(&format!("{url}\n"))?;
     if !arguments.attached {
-        terminal::tell("open this address in a browser; Ctrl-C ends the dashboard, and runs go on");
+        message::print("open this address in a browser; Ctrl-C ends the dashboard, and runs go on");
     }
     if !address.ip().is_loopback() {
-        terminal::tell(
+        message::print(
             "warning: the token and the runs travel without encryption: whoever overhears them can see the runs",
         );
     }

@@ -2,17 +2,18 @@
 //! difference, how certain that is, and how far the gap closes.
 use crate::cli::{
     argument::{case::case_folder, output::OutputChoice, workers::WorkersChoice},
-    output::{diagnosis::DiagnosisOutput, problem::EXIT_CODES, progress::StageDisplay, terminal},
-    run::{
-        diagnosis::{Diagnosis, DiagnosisSettings, diagnose},
-        manifest::DIAGNOSE,
-        opened::Run,
-        session::Session,
-        target::Target,
-    },
+    output::{diagnosis::DiagnosisOutput, problem::EXIT_CODES, progress::StageDisplay},
 };
 use clap::Args;
 use discrepancy::thresholds::Thresholds;
+use run::{
+    diagnosis::{DiagnosisRun, DiagnosisSettings, diagnose},
+    manifest::DIAGNOSE,
+    message,
+    opened::Run,
+    session::Session,
+    target::StudyTarget,
+};
 use std::path::PathBuf;
 
 /// Find what the simulation is missing: where, which effect, how large, and the proof.
@@ -72,8 +73,8 @@ pub(super) struct Arguments {
 
 /// Runs the diagnosis from the measured records to the report.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let session = Session::begin(&arguments.workers);
-    let mut target = Target::read(
+    let session = Session::begin();
+    let mut target = StudyTarget::read(
         &arguments.target,
         arguments.measured.as_deref(),
         arguments.genes.as_deref(),
@@ -97,32 +98,37 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         },
     };
     let stated = target.loaded.effects.len();
-    if let Ok(earlier) = Diagnosis::open(&path) {
+    if let Ok(earlier) = DiagnosisRun::open(&path) {
         target = target.without_additions_of(&earlier)?;
     }
     let has_own = target.loaded.effects.len() < stated;
-    terminal::note(&target.loaded.notes);
+    message::print_notes(&target.loaded.notes);
     let manifest = target.manifest(seed, settings)?;
     let run = Run::begin(&path, manifest, target.loaded.case.clone())?;
     let answer = if let Some(answer) = DiagnosisOutput::read_complete(&run) {
         let path = run.folder.path().display();
-        terminal::tell(&format!(
+        message::print(&format!(
             "{path} is finished: its result is read from its journal"
         ));
         answer
     } else {
-        session.work(&run, async |dispatch, stop| {
-            let mut display = StageDisplay::new();
-            let found = diagnose(dispatch, &run.manifest, &target.loaded, &mut display, stop).await;
-            display.clear();
-            found
-        })?;
+        session.work(
+            &run,
+            &arguments.workers.session()?,
+            async |dispatch, stop| {
+                let mut display = StageDisplay::new();
+                let found =
+                    diagnose(dispatch, &run.manifest, &target.loaded, &mut display, stop).await;
+                display.clear();
+                found
+            },
+        )?;
         DiagnosisOutput::read(&run, session.wall_s(&run))?
     };
     let object = answer.write()?;
     let file = target.folder.join("case.toml");
     if arguments.add && has_own {
-        terminal::tell(&format!(
+        message::print(&format!(
             "{} has what this run found already",
             file.display()
         ));

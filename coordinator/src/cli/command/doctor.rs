@@ -6,12 +6,12 @@ use crate::cli::{
         output::OutputChoice,
     },
     output::{problem::EXIT_CODES, terminal},
-    run::dispatcher,
 };
 use clap::Args;
 use dispatch::runtime::{local_socket, locate::worker_program};
 use launch::doctor::{Check, Layer, dial, listen, program};
 use link::locator::Locator;
+use run::session::dispatcher;
 use serde::Serialize;
 use std::path::PathBuf;
 

@@ -2,12 +2,12 @@
 use crate::cli::{
     argument::output::OutputChoice,
     output::{problem::EXIT_CODES, terminal},
-    run::folder::RunFolder,
 };
 use clap::Args;
 use journal::account::{self, HostUse, JobUse, RunAccount};
 use journal::event::Spent;
 use report::table::{self, Table};
+use run::folder::RunFolder;
 use serde::Serialize;
 use std::{collections::BTreeMap, path::PathBuf};
 

@@ -2,17 +2,18 @@
 //! which remain undetermined.
 use crate::cli::{
     argument::{case::case_folder, output::OutputChoice, workers::WorkersChoice},
-    output::{identification::show, problem::EXIT_CODES, progress::StageDisplay, terminal},
-    run::{
-        identification::{IdentificationSettings, identify},
-        manifest::IDENTIFY,
-        opened::Run,
-        session::Session,
-        target::Target,
-    },
+    output::{identification::show, problem::EXIT_CODES, progress::StageDisplay},
 };
 use clap::Args;
 use discrepancy::thresholds::Thresholds;
+use run::{
+    identification::{IdentificationSettings, identify},
+    manifest::IDENTIFY,
+    message,
+    opened::Run,
+    session::Session,
+    target::StudyTarget,
+};
 use std::path::PathBuf;
 
 /// Say which unknowns a record determines, how well, which trade off, and what that does to predictions.
@@ -58,8 +59,8 @@ pub(super) struct Arguments {
 
 /// Runs the identifiability analysis from the measured records to the report.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let session = Session::begin(&arguments.workers);
-    let target = Target::read(
+    let session = Session::begin();
+    let target = StudyTarget::read(
         &arguments.target,
         arguments.measured.as_deref(),
         arguments.genes.as_deref(),
@@ -69,18 +70,22 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         Some(path) => path.clone(),
         None => target.run_path(IDENTIFY, seed)?,
     };
-    terminal::note(&target.loaded.notes);
+    message::print_notes(&target.loaded.notes);
     let settings = IdentificationSettings {
         orders: Thresholds::default().orders,
         differences: arguments.differences,
     };
     let manifest = target.manifest(seed, settings)?;
     let run = Run::begin(&path, manifest, target.loaded.case.clone())?;
-    session.work(&run, async |dispatch, stop| {
-        let mut display = StageDisplay::new();
-        let found = identify(dispatch, &run.manifest, &target.loaded, &mut display, stop).await;
-        display.clear();
-        found
-    })?;
+    session.work(
+        &run,
+        &arguments.workers.session()?,
+        async |dispatch, stop| {
+            let mut display = StageDisplay::new();
+            let found = identify(dispatch, &run.manifest, &target.loaded, &mut display, stop).await;
+            display.clear();
+            found
+        },
+    )?;
     show(&run, session.wall_s(&run), arguments.output.output)
 }

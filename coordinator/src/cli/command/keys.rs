@@ -1,17 +1,13 @@
 //! `horsehead keys`: creates certificates for workers on other machines.
-use crate::cli::{
-    argument::workers::worker_count,
-    output::{
-        problem::{EXIT_CODES, Problem},
-        terminal,
-    },
-};
+use crate::cli::{argument::workers::worker_count, output::problem::EXIT_CODES};
 use clap::{Args, Subcommand};
 use link::keys::{
     CA_KEY, KeyError, KeyRole, Keys, WORKER,
     authority::{Authority, Validity},
 };
+use run::message;
 use std::path::{Path, PathBuf};
+use support::Problem;
 
 /// Make the certificates with which workers join over a network.
 #[derive(Debug, Args)]
@@ -113,7 +109,7 @@ fn make(folder: &Path, workers: usize, hosts: &[String], valid: Validity) -> Res
     }
     let at = folder.display();
     let dial = hosts.first().map_or("HEAD", String::as_str);
-    terminal::tell(&format!(
+    message::print(&format!(
         "made {at} for {} and {workers} workers\n\
          coordinator: horsehead calibrate CASE --listen quic/0.0.0.0:7447 --tls {at}\n\
          each worker: copy {at}/worker-01 (or another) to its machine, then\n  \
@@ -128,7 +124,7 @@ fn add(folder: &Path, names: &[String], valid: Validity) -> Result<(), KeyError>
     let authority = Authority::open(folder)?;
     for name in names {
         let made = authority.issue_worker(name, valid)?;
-        terminal::tell(&format!("made {}", made.display()));
+        message::print(&format!("made {}", made.display()));
     }
     Ok(())
 }
@@ -136,7 +132,7 @@ fn add(folder: &Path, names: &[String], valid: Validity) -> Result<(), KeyError>
 fn check(folder: &Path) -> Result<(), KeyError> {
     if folder.join(WORKER[0]).exists() {
         let keys = Keys::read(folder, KeyRole::Worker)?;
-        terminal::tell(&format!(
+        message::print(&format!(
             "{} can be used by workers, as \"{}\"",
             folder.display(),
             keys.owner()
@@ -144,7 +140,7 @@ fn check(folder: &Path) -> Result<(), KeyError> {
     } else {
         let keys = Keys::read(folder, KeyRole::Coordinator)?;
         let names: Vec<&str> = keys.workers().iter().map(String::as_str).collect();
-        terminal::tell(&format!(
+        message::print(&format!(
             "{} can be used by a coordinator; {} workers may join: {}",
             folder.display(),
             names.len(),

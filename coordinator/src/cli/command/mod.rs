@@ -17,9 +17,12 @@ mod documented_commands;
 mod evaluate;
 mod explain;
 mod export;
+mod head;
 mod identify;
 mod keys;
+mod life;
 mod presets;
+mod record;
 mod report;
 mod simulate;
 mod sweep;
@@ -29,8 +32,8 @@ mod verify;
 mod workers;
 
 use super::output::{problem, terminal};
-use crate::pumping_unit::{command as head, record};
 use clap::{Arg, ArgAction, CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
+use run::message;
 use std::process::ExitCode;
 
 /// Makes a simulation agree with what was measured on the machine, and finds what it is missing.
@@ -66,6 +69,7 @@ const GROUPS: &[(&str, &[&str])] = &[
             "verify",
             "diagnose",
             "identify",
+            "life",
             "dashboard",
             "report",
             "export",
@@ -145,6 +149,7 @@ commands! {
     Verify: verify,
     Diagnose: diagnose,
     Identify: identify,
+    Life: life,
     Head: head,
     Record: record,
     Dashboard: dashboard,
@@ -167,7 +172,7 @@ pub fn main() -> ExitCode {
         Ok(cli) => cli,
         Err(error) => match problem::in_plain_words(&error.to_string()) {
             Some(text) if error.use_stderr() => {
-                terminal::tell(text.trim_end());
+                message::print(text.trim_end());
                 return ExitCode::from(problem::BAD_INPUT);
             }
             _ => error.exit(),

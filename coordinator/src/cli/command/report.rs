@@ -1,6 +1,10 @@
 //! `horsehead report`: writes the files of a finished run again, from its journal.
-use crate::cli::{argument::output::OutputChoice, output::problem::EXIT_CODES, run::kind::AnyRun};
+use crate::cli::{
+    argument::output::OutputChoice,
+    output::{calibration, diagnosis::DiagnosisOutput, identification, problem::EXIT_CODES, sweep},
+};
 use clap::Args;
+use run::view::AnyRun;
 use std::path::PathBuf;
 
 /// Write tables, figures and report of a finished run again, from its journal.
@@ -23,5 +27,16 @@ pub(super) struct Arguments {
 
 /// Reads the result of the run from its journal and writes its report files.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    AnyRun::open(&arguments.run)?.show(arguments.output.output)
+    let output = arguments.output.output;
+    match AnyRun::open(&arguments.run)? {
+        AnyRun::Calibration(run) => calibration::show(&run, run.manifest.wall_s, output),
+        AnyRun::Diagnosis(run) => {
+            let answer = DiagnosisOutput::read(&run, run.manifest.wall_s)?;
+            let object = answer.write()?;
+            answer.print(output, &object)
+        }
+        AnyRun::Identification(run) => identification::show(&run, run.manifest.wall_s, output),
+        AnyRun::Test(run) => sweep::show_test(&run, output),
+        AnyRun::Sweep(run) => sweep::show_file(&run, output),
+    }
 }

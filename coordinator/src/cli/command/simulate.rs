@@ -1,21 +1,20 @@
 //! `horsehead simulate`: simulates one individual under one condition.
-use crate::{
-    cli::{
-        argument::{
-            case::CaseChoice,
-            derivatives::columns,
-            individual::IndividualChoice,
-            output::{Output, OutputChoice},
-        },
-        output::{files::check_out, object::simulation::simulation, problem::EXIT_CODES, terminal},
-        run::{command_line::command_line, hash, manifest, temporary::compare_once},
+use crate::cli::{
+    argument::{
+        case::CaseChoice,
+        derivatives::columns,
+        individual::IndividualChoice,
+        output::{Output, OutputChoice},
     },
-    kind,
+    output::{
+        files::check_out, model, object::simulation::simulation, problem::EXIT_CODES, terminal,
+    },
 };
 use anyhow::Context as _;
 use clap::Args;
 use protocol::{case::Case, job::Verdict};
 use report::{self, Origin, SingleRun, table, words};
+use run::{command_line::command_line, hash, manifest, message, session::temporary::compare_once};
 use std::path::PathBuf;
 use study::{self, CompareRequest, Compared, ComparedCurves, EvaluatorError, PICTURES};
 
@@ -64,7 +63,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let derived: Vec<String> = columns.iter().map(|column| column.name.clone()).collect();
     let pictures = if arguments.out.is_some() { PICTURES } else { 0 };
     let outside = outside_bounds(case, &genes);
-    terminal::note(&outside);
+    message::print_notes(&outside);
     let mut notes = loaded.notes.clone();
     notes.extend(outside);
     let wanted = CompareRequest {
@@ -76,12 +75,12 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     };
     let groups = compare_once("simulate", case, std::slice::from_ref(&wanted), 1)?;
     let mismatches = study::mismatches(case, &loaded.cycles, &groups);
-    terminal::note(&mismatches);
+    message::print_notes(&mismatches);
     notes.extend(mismatches);
     let curves = first(groups).context("no result came back")?;
 
     let verdict = curves.drawn.verdict;
-    let digest = kind::of(case).digest(&curves.drawn)?;
+    let digest = model::of(case).digest(&curves.drawn)?;
     let run = SingleRun {
         case: case.clone(),
         origin: Origin {
@@ -106,7 +105,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if let Some(folder) = &arguments.out {
         let files = report::write_simulation(folder, &run)?;
         if let Some(first) = files.first() {
-            terminal::tell(&format!(
+            message::print(&format!(
                 "wrote {} files; open {}",
                 files.len(),
                 first.display()
@@ -114,7 +113,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         }
     }
     if arguments.out.is_none() && arguments.output.output == Output::Table {
-        terminal::tell("add --out DIR for the report with figures and curves");
+        message::print("add --out DIR for the report with figures and curves");
     }
     let object = simulation((case, condition), &curves, &derived, digest)?;
     let tables = || {

@@ -1,30 +1,26 @@
 //! Tests of the command line: help texts, run folders, gene files.
 use super::*;
-use crate::cli::{
-    argument::{
-        individual::condition,
-        settings::{self, ResolvedSettings, SettingsChoice},
-    },
-    output::problem::Problem,
-    run::{
-        calibration::Calibration,
-        folder::RunFolder,
-        hash, manifest,
-        manifest::{CALIBRATE, DIAGNOSE, FORMAT, Manifest, Start},
-        name::{RunName, belongs_to_another},
-        opened::Run,
-    },
-};
+use crate::cli::argument::{individual::condition, settings};
 use ::case::{Overrides, load, read_genes, write_genes};
 use protocol::{
     case::{Case, EffectSetting},
     pumping_unit::{Machine, PumpingUnit},
+};
+use run::{
+    calibration::CalibrationRun,
+    folder::RunFolder,
+    hash,
+    manifest::{self, CALIBRATE, DIAGNOSE, FORMAT, Manifest, StartPoint},
+    name::{RunName, belongs_to_another},
+    opened::Run,
+    settings::{KeyValue, ResolvedSettings, choose, keep_worker_dependent},
 };
 use search::{
     space::Space,
     strategy::{SearchPlan, preset},
 };
 use std::path::{Path, PathBuf};
+use support::Problem;
 
 fn shipped() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases/cyjs10-5-37hb")
@@ -56,8 +52,9 @@ fn manifest(case: &Case, seed: u64) -> Manifest {
 }
 
 /// Returns the start of a run at values of the unknowns other than the recommended ones.
-fn started(case: &Case) -> Start {
-    Start {
+fn started(case: &Case) -> StartPoint {
+    StartPoint {
+        families: None,
         file: "found.toml".into(),
         genes: case.unknowns.iter().map(|gene| 2.0 * gene.start).collect(),
         effects: Vec::new(),
@@ -86,7 +83,7 @@ fn a_run_keeps_the_genes_that_it_started_at() {
         "{error}"
     );
     // what is computed again for a report begins there, too
-    let kept = Calibration::open(scratch.path()).unwrap();
+    let kept = CalibrationRun::open(scratch.path()).unwrap();
     let origin = vec![0.0; case.unknowns.len()];
     assert_eq!(
         kept.manifest.space(&kept.case).unwrap().values(&origin),
@@ -317,7 +314,7 @@ fn a_run_folder_goes_on_with_the_same_run_and_refuses_another() {
     let help = other.downcast::<Problem>().unwrap().remedy;
     assert!(help.contains("-quick-seed3-2"), "another folder in {help}");
     // the case comes back with every bit, so its hash and the journal still fit
-    let kept = Calibration::open(&path).unwrap().case;
+    let kept = CalibrationRun::open(&path).unwrap().case;
     assert_eq!(kept, case);
     assert_eq!(
         hash::case_hash(&kept).unwrap(),
@@ -415,13 +412,13 @@ fn chosen(name: &str, set: &[(&str, &str)], workers: usize) -> Result<ResolvedSe
         space: &space,
         workers,
     };
-    choice(set).choose(preset(name).unwrap(), &plan)
+    choose(&pairs(set), preset(name).unwrap(), &plan)
 }
 
-fn choice(set: &[(&str, &str)]) -> SettingsChoice {
+fn pairs(set: &[(&str, &str)]) -> Vec<KeyValue> {
     let words = set.iter();
     let set = words.map(|(key, value)| ((*key).to_owned(), (*value).to_owned()));
-    SettingsChoice { set: set.collect() }
+    set.collect()
 }
 
 #[test]
@@ -503,7 +500,7 @@ fn what_follows_the_workers_stays_with_the_run() {
     let kept = |set: &[(&str, &str)], earlier: Option<&ResolvedSettings>| {
         let mut now = chosen("window", set, 40).unwrap();
         let earlier = earlier.map(|earlier| &earlier.settings);
-        choice(set).keep_worker_dependent(&mut now, window, earlier);
+        keep_worker_dependent(&pairs(set), &mut now, window, earlier);
         now.set
     };
     let earlier = chosen("window", &[], 2).unwrap();

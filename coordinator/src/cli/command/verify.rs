@@ -7,23 +7,24 @@ use crate::cli::{
         workers::{cores, worker_count},
     },
     output::{
-        calibration::condition_result,
         object::{calibration::VerifyOutput, score},
-        problem::{EXIT_CODES, Problem},
+        problem::EXIT_CODES,
         terminal,
-    },
-    run::{
-        calibration::{Calibration, pair},
-        folder::GENES,
-        temporary::compare_once,
     },
 };
 use anyhow::Context as _;
 use case::{read_genes, require_record};
 use clap::Args;
 use report::table;
+use run::{
+    calibration::{CalibrationRun, condition_result, pair},
+    folder::GENES,
+    message,
+    session::temporary::compare_once,
+};
 use std::{path::PathBuf, time::Instant};
 use study::CompareRequest;
+use support::Problem;
 
 /// Score a run's parameters under another working condition (the paper's Table 4).
 #[derive(Debug, Args)]
@@ -52,7 +53,7 @@ pub(super) struct Arguments {
 /// Scores the recommended and the optimised parameters and prints them side by side.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let started = Instant::now();
-    let run = Calibration::open(&arguments.run)?;
+    let run = CalibrationRun::open(&arguments.run)?;
     let parameters = run.folder.file(GENES);
     if !parameters.exists() {
         return Err(Problem {
@@ -98,7 +99,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         machine: report::condition_checks(&case, &result),
     };
     for note in &run.manifest.notes {
-        terminal::tell(&format!("note: {note}"));
+        message::print(&format!("note: {note}"));
     }
     let tables = || {
         let table = table::text(&table::table_4(&case, &result), terminal::style());

@@ -6,58 +6,16 @@ use super::{
     },
     terminal,
 };
-use crate::cli::{
-    argument::output::Output,
-    run::{
-        calibration::{Calibration as Run, recorded},
-        folder::{GENES, RESULT},
-        tables,
-    },
-};
+use crate::cli::argument::output::Output;
 use case::CaseEffect;
-use discrepancy::identify::UnknownEstimate;
-use journal::account::JobCost;
-use protocol::{
-    case::WeightedCondition,
-    job::{Counters, Evaluation, Verdict},
-};
-use report::{self, Calibration, ConditionResult, HistoryPoint, Individual, RivalFit};
-use search::strategy::{
-    Finish,
-    family::{Rival, rivals},
+use protocol::{case::WeightedCondition, job::Verdict};
+use run::{
+    calibration::{CalibrationRun as Run, recorded, report_data},
+    folder::{GENES, RESULT},
+    message, tables,
 };
 use std::collections::BTreeMap;
-use study::{
-    self, Calibrated, CalibrationResult, Compared, ComparedCurves, LogEntry, RecordedCalibration,
-};
-
-/// Converts the comparison of the recommended and the optimised individual under one condition to the
-/// report's type; `None` unless exactly these two were compared.
-pub(crate) fn condition_result(compared: &Compared) -> Option<ConditionResult> {
-    let [recommended, optimised] = compared.individuals.as_slice() else {
-        return None;
-    };
-    Some(ConditionResult {
-        condition: compared.condition,
-        recommended: report_run(recommended),
-        optimised: report_run(optimised),
-    })
-}
-
-pub(crate) fn report_run(curves: &ComparedCurves) -> report::Run {
-    let unscored = || Evaluation {
-        verdict: curves.drawn.verdict,
-        fitness: f64::NAN,
-        channels: Vec::new(),
-        residual: Vec::new(),
-        columns: Vec::new(),
-        counters: Counters::default(),
-    };
-    report::Run {
-        evaluation: curves.evaluation.clone().unwrap_or_else(unscored),
-        curves: curves.drawn.clone(),
-    }
-}
+use study::CalibrationResult;
 
 /// Reads the result of a finished calibration from its run folder, writes its files and prints it.
 ///
@@ -65,8 +23,8 @@ pub(crate) fn report_run(curves: &ComparedCurves) -> report::Run {
 /// As [`recorded`], and if a file cannot be written.
 pub(crate) fn show(run: &Run, wall_s: f64, output: Output) -> anyhow::Result<()> {
     let recorded = recorded(run)?;
-    terminal::damage(&recorded.account.damage);
-    let calibration = calibration(run, &recorded, wall_s)?;
+    message::print_damage(&recorded.account.damage);
+    let calibration = report_data(run, &recorded, wall_s)?;
     let found = &recorded.result;
     let folder = &run.folder;
     let about = format!(
@@ -89,7 +47,7 @@ pub(crate) fn show(run: &Run, wall_s: f64, output: Output) -> anyhow::Result<()>
         .map(|rival| RivalOutput::new(&run.case, rival))
         .collect();
     folder.write_json(RESULT, &object)?;
-    terminal::tell(&format!(
+    message::print(&format!(
         "open {}\nparameters in {}",
         folder.file("report.html").display(),
         folder.file(GENES).display()
@@ -100,7 +58,7 @@ pub(crate) fn show(run: &Run, wall_s: f64, output: Output) -> anyhow::Result<()>
     ];
     let flags = report::flags(&object.machine);
     for note in flags.into_iter().chain(said.into_iter().flatten()) {
-        terminal::tell(&format!("note: {note}"));
+        message::print(&format!("note: {note}"));
     }
     let tables = || report::parameters(&calibration, terminal::style());
     terminal::print(output, tables, &object)
@@ -172,87 +130,5 @@ fn total_objective(run: &Run, found: &CalibrationResult) -> RecommendedAndOptimi
     RecommendedAndOptimised {
         recommended: of(0),
         optimised: of(1),
-    }
-}
-
-/// Builds the data of a finished calibration's report.
-pub(crate) fn calibration(
-    run: &Run,
-    recorded: &RecordedCalibration,
-    wall_s: f64,
-) -> anyhow::Result<Calibration> {
-    let case = &run.case;
-    let RecordedCalibration {
-        result: found,
-        estimates: identifiability,
-        account,
-        costs,
-    } = recorded;
-    let Calibrated {
-        best, finish, log, ..
-    } = &found.calibrated;
-    let mut notes = [&run.manifest.notes[..], &found.notes].concat();
-    if !best.complete {
-        notes.push("no individual completed its simulation".to_owned());
-    }
-    let history = log
-        .entries()
-        .map(|entry| history_point(entry, costs.get(&entry.id).copied()));
-    Ok(Calibration {
-        case: case.clone(),
-        origin: run.origin(log.digest())?,
-        recommended: Individual {
-            id: None,
-            genes: case.start(),
-        },
-        optimised: Individual {
-            id: Some(best.id),
-            genes: best.genes.clone(),
-        },
-        history: history.collect(),
-        workers: account.workers.clone(),
-        presence: account.presence.clone(),
-        spent: account.spent,
-        wall_s,
-        finish: match finish {
-            Finish::Planned => "everything that was planned has been evaluated".to_owned(),
-            Finish::Threshold => "the fitness threshold was reached".to_owned(),
-        },
-        conditions: found.compared.iter().filter_map(condition_result).collect(),
-        rivals: rival_fits(run, &found.calibrated, identifiability)?,
-        identifiability: identifiability.clone(),
-        notes,
-    })
-}
-
-/// Returns the best fits of other families whose objective lies near that of the best individual.
-fn rival_fits(
-    run: &Run,
-    found: &Calibrated,
-    identifiability: &[UnknownEstimate],
-) -> anyhow::Result<Vec<RivalFit>> {
-    let space = run.manifest.space(&run.case)?;
-    let determined = |name: &str| report::is_determined(identifiability, name);
-    let best = (&found.best.genes[..], found.best.fitness);
-    let rivals = rivals(&space, best, &found.descent_ends, determined).into_iter();
-    let fit = |rival: Rival<'_>| RivalFit {
-        genes: rival.end.genes.clone(),
-        objective: rival.end.fitness,
-        differs: rival.differs.into_iter().map(str::to_owned).collect(),
-    };
-    Ok(rivals.map(fit).collect())
-}
-
-/// Converts a log entry to the report's type; `cost` is that of its simulation, if known.
-pub(crate) fn history_point(entry: &LogEntry, cost: Option<JobCost>) -> HistoryPoint {
-    HistoryPoint {
-        id: entry.id,
-        generation: entry.generation,
-        purpose: entry.purpose.as_str().to_owned(),
-        genes: entry.genes.clone(),
-        fitness: entry.fitness,
-        complete: entry.ending == study::EvaluationOutcome::Complete,
-        failure: entry.ending.failure(),
-        cost,
     }
 }

@@ -3,22 +3,21 @@ use super::{
     object::diagnosis::answer::{DiagnoseOutput, object},
     terminal,
 };
-use crate::cli::{
-    argument::output::Output,
-    run::{
-        command_line::quote_path,
-        diagnosis::{Diagnosis, recorded},
-        folder::{GENES, RESULT},
-    },
-};
+use crate::cli::argument::output::Output;
 use ::report::{diagnosis as report, text};
 use case::{CaseEffect, Overrides, append_effects, load_with_notes, write_starts};
+use run::{
+    command_line::quote_path,
+    diagnosis::{DiagnosisRun, recorded, report_input},
+    folder::{GENES, RESULT},
+    message,
+};
 use std::path::Path;
 use study::RecordedDiagnosis;
 
 /// Finished diagnosis, read from its journal.
 pub(crate) struct DiagnosisOutput<'a> {
-    run: &'a Diagnosis,
+    run: &'a DiagnosisRun,
     recorded: RecordedDiagnosis,
     /// Wall time of the run over all its sessions (s).
     wall_s: f64,
@@ -29,7 +28,7 @@ impl<'a> DiagnosisOutput<'a> {
     ///
     /// # Errors
     /// As [`recorded`].
-    pub(crate) fn read(run: &'a Diagnosis, wall_s: f64) -> anyhow::Result<Self> {
+    pub(crate) fn read(run: &'a DiagnosisRun, wall_s: f64) -> anyhow::Result<Self> {
         Ok(Self {
             run,
             recorded: recorded(run)?,
@@ -38,7 +37,7 @@ impl<'a> DiagnosisOutput<'a> {
     }
 
     /// Reads a diagnosis of which nothing is left to compute; `None` if it has no result, or a damaged journal.
-    pub(crate) fn read_complete(run: &'a Diagnosis) -> Option<Self> {
+    pub(crate) fn read_complete(run: &'a DiagnosisRun) -> Option<Self> {
         let read = || Self::read(run, run.manifest.wall_s).ok();
         let finished = run.folder.is_finished().then(read).flatten();
         finished.filter(|own| own.recorded.damage.is_empty())
@@ -46,12 +45,7 @@ impl<'a> DiagnosisOutput<'a> {
 
     /// Builds the data of the diagnosis's report.
     pub(crate) fn subject(&self) -> anyhow::Result<report::DiagnosisInput<'_>> {
-        Ok(report::DiagnosisInput {
-            case: &self.run.case,
-            diagnosed: &self.recorded,
-            origin: self.run.origin(String::new())?,
-            wall_s: self.wall_s,
-        })
+        report_input(self.run, &self.recorded, self.wall_s)
     }
 
     /// Writes the fitted parameters and effects of the final model as a gene file: simulating them reproduces the
@@ -72,7 +66,7 @@ impl<'a> DiagnosisOutput<'a> {
     /// Writes the result files of the diagnosis into the run folder and returns the object for `--output
     /// json`.
     pub(crate) fn write(&self) -> anyhow::Result<DiagnoseOutput> {
-        terminal::damage(&self.recorded.damage);
+        message::print_damage(&self.recorded.damage);
         let subject = self.subject()?;
         if let Some(text) = report::effects_toml(&subject) {
             self.run.folder.write("effects.toml", &text)?;
@@ -82,7 +76,7 @@ impl<'a> DiagnosisOutput<'a> {
             .iter()
             .take(1)
         {
-            terminal::tell(&format!("open {}", file.display()));
+            message::print(&format!("open {}", file.display()));
         }
         let object = object(&subject);
         self.run.folder.write_json(RESULT, &object)?;
@@ -119,8 +113,8 @@ impl<'a> DiagnosisOutput<'a> {
         if !starts.is_empty() {
             write_starts(file, &starts)?;
         }
-        terminal::tell(&format!("added to {}", file.display()));
-        terminal::tell(&format!(
+        message::print(&format!("added to {}", file.display()));
+        message::print(&format!(
             "to calibrate the added effects together with all other unknowns, starting from the values found:\n  horsehead calibrate {} --genes {}",
             quote_path(&self.run.manifest.case_folder),
             quote_path(&self.run.folder.file(GENES)),

@@ -1,8 +1,8 @@
 //! Checks of output folders that the user names on the command line.
-use super::problem::Problem;
-use crate::cli::run::folder::MANIFEST;
 use report::document::GENERATOR;
+use run::folder::MANIFEST;
 use std::{fs, path::Path};
+use support::Problem;
 
 /// Checks that a report can be written into the folder given by the user, before any simulation is run for it. Unless
 /// `force` is set, the folder must be new or empty, or hold a report of this program that is no run's.

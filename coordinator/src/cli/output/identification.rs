@@ -1,24 +1,22 @@
 //! Output of a finished identifiability analysis: files in the run folder, and text or JSON on standard
 //! output.
 use super::{object::identification::object, terminal};
-use crate::cli::{
-    argument::output::Output,
-    run::{
-        folder::RESULT,
-        identification::{Identification, recorded},
-    },
-};
+use crate::cli::argument::output::Output;
 use ::report::{identification as report, text};
 use case::CaseEffect;
-use study::IdentificationStudy;
+use run::{
+    folder::RESULT,
+    identification::{IdentificationRun, recorded, report_input},
+    message,
+};
 
 /// Reads the result of a finished identifiability analysis from its run folder, writes its files and prints it.
 ///
 /// # Errors
 /// As [`recorded`], and if a file cannot be written.
-pub(crate) fn show(run: &Identification, wall_s: f64, output: Output) -> anyhow::Result<()> {
+pub(crate) fn show(run: &IdentificationRun, wall_s: f64, output: Output) -> anyhow::Result<()> {
     let found = recorded(run)?;
-    let subject = subject(run, &found, wall_s)?;
+    let subject = report_input(run, &found, wall_s)?;
     let about = format!("Parameters of {}", run.folder.path().display());
     run.folder.write_genes(
         &run.case,
@@ -28,25 +26,10 @@ pub(crate) fn show(run: &Identification, wall_s: f64, output: Output) -> anyhow:
     )?;
     let files = report::write(run.folder.path(), &subject)?;
     for page in files.iter().take(1) {
-        terminal::tell(&format!("open {}", page.display()));
+        message::print(&format!("open {}", page.display()));
     }
     let object = object(&subject, found.simulations);
     run.folder.write_json(RESULT, &object)?;
     let tables = || text(&report::report(&subject), terminal::style());
     terminal::print(output, tables, &object)
-}
-
-/// Builds the data of a finished identifiability analysis's report.
-pub(crate) fn subject<'a>(
-    run: &'a Identification,
-    found: &'a IdentificationStudy,
-    wall_s: f64,
-) -> anyhow::Result<report::IdentificationInput<'a>> {
-    Ok(report::IdentificationInput {
-        case: &run.case,
-        identified: &found.identified,
-        origin: run.origin(String::new())?,
-        notes: &found.notes,
-        wall_s,
-    })
 }

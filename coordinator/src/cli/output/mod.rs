@@ -3,6 +3,7 @@ pub(super) mod calibration;
 pub(super) mod diagnosis;
 pub(super) mod files;
 pub(super) mod identification;
+pub(super) mod model;
 pub(crate) mod object;
 pub(crate) mod problem;
 pub(super) mod progress;

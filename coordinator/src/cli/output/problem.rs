@@ -1,25 +1,20 @@
 //! Error output of commands: message, causes, remedies and the exit code.
-use super::terminal;
 use case::CaseError;
+use run::{message, session::interrupt::INTERRUPTED};
 use std::process::ExitCode;
 use study::{EvaluatorError, StudyError};
+use support::Problem;
 
 /// Line of exit codes at the end of every command's help.
 pub(crate) const EXIT_CODES: &str =
     "Exit codes: 0 done, 1 failed, 2 usage or bad input, 130 interrupted.";
 
 const FAILED: u8 = 1;
-/// Exit code of a wrong command line or wrong input.
+/// Exit code of a wrong command line or wrong input, such as a [`Problem`].
 pub(crate) const BAD_INPUT: u8 = 2;
-/// Exit code after Ctrl-C.
-pub(crate) const INTERRUPTED: u8 = 130;
-
-/// Error for a command line, or a file it names, that cannot be used; results in exit code 2.
-pub(crate) use support::Problem;
-
 /// Prints an error with its causes and remedies, and returns its exit code.
 pub(crate) fn explain(error: &anyhow::Error) -> ExitCode {
-    terminal::tell(&describe(error));
+    message::print(&describe(error));
     ExitCode::from(code(error))
 }
 

@@ -1,8 +1,8 @@
 //! Progress display on standard error: a bar on a terminal, else a line per generation or every ten seconds.
-use super::terminal;
 use discrepancy::laboratory::Stage;
 use indicatif::{ProgressBar, ProgressStyle};
 use journal::event::Spent;
+use run::message;
 use search::strategy::{CATALOGUE, Preset, preset};
 use std::{
     collections::VecDeque,
@@ -47,13 +47,17 @@ impl Display {
     }
 
     /// Tells the user once that more slots are connected than the search fills.
-    fn tell_surplus(&mut self, crew: &Snapshot) {
-        let slots: u64 = crew.workers.iter().map(|own| u64::from(own.slots)).sum();
+    fn print_surplus(&mut self, snapshot: &Snapshot) {
+        let slots: u64 = snapshot
+            .workers
+            .iter()
+            .map(|own| u64::from(own.slots))
+            .sum();
         if let Some(preset) = self.preset
             && let Some(note) = surplus(preset, slots)
         {
             self.preset = None;
-            terminal::tell(&note);
+            message::print(&note);
         }
     }
 
@@ -117,10 +121,10 @@ impl StageDisplay {
 
 impl Watch<StageView> for StageDisplay {
     fn noted(&mut self, notes: &[String]) {
-        terminal::note(notes);
+        message::print_notes(notes);
     }
 
-    fn progress(&mut self, view: &StageView, crew: &dyn Fn() -> Snapshot) {
+    fn progress(&mut self, view: &StageView, snapshot: &dyn Fn() -> Snapshot) {
         let StageView {
             stage, done, open, ..
         } = *view;
@@ -137,7 +141,7 @@ impl Watch<StageView> for StageDisplay {
         }
         self.last = now;
         self.stage = Some(stage);
-        let workers = at_work(&crew());
+        let workers = at_work(&snapshot());
         let line = format!(
             "{}: {done} simulations, {open} open  {}{workers}",
             stage.name(),
@@ -151,7 +155,7 @@ impl Watch<StageView> for StageDisplay {
                 bar.set_message(line);
                 bar.tick();
             }
-            None => terminal::tell(&line),
+            None => message::print(&line),
         }
     }
 }
@@ -186,7 +190,7 @@ pub(crate) struct Silent;
 
 impl<V> Watch<V> for Silent {
     fn noted(&mut self, notes: &[String]) {
-        terminal::note(notes);
+        message::print_notes(notes);
     }
 
     fn progress(&mut self, _view: &V, _crew: &dyn Fn() -> Snapshot) {}
@@ -194,14 +198,14 @@ impl<V> Watch<V> for Silent {
 
 impl Watch<ProgressView> for Display {
     fn noted(&mut self, notes: &[String]) {
-        terminal::note(notes);
+        message::print_notes(notes);
     }
 
     fn resumed(&mut self, recorded: usize) {
         self.recorded = recorded as u64;
     }
 
-    fn progress(&mut self, view: &ProgressView, crew: &dyn Fn() -> Snapshot) {
+    fn progress(&mut self, view: &ProgressView, snapshot: &dyn Fn() -> Snapshot) {
         // what is only read again needs neither workers nor lines
         let reading = view.completed == view.replayed && view.completed < self.recorded;
         if reading && view.completed < view.expected {
@@ -218,16 +222,16 @@ impl Watch<ProgressView> for Display {
         }
         self.last = now;
         self.generation = Some(view.generation);
-        let crew = crew();
-        self.tell_surplus(&crew);
-        let words = describe(view, (self.counted, &self.unit), &crew);
+        let snapshot = snapshot();
+        self.print_surplus(&snapshot);
+        let words = describe(view, (self.counted, &self.unit), &snapshot);
         match &self.bar {
             Some(bar) => {
                 bar.set_length(view.expected);
                 bar.set_position(view.completed);
                 bar.set_message(words);
             }
-            None => terminal::tell(&format!("{}/{}  {words}", view.completed, view.expected)),
+            None => message::print(&format!("{}/{}  {words}", view.completed, view.expected)),
         }
     }
 }
@@ -251,7 +255,7 @@ fn surplus(preset: &Preset, slots: u64) -> Option<String> {
 }
 
 /// Formats the progress line: generation or stage, best objective, failures, workers, rate, remaining time.
-fn describe(view: &ProgressView, (counted, unit): (&str, &str), crew: &Snapshot) -> String {
+fn describe(view: &ProgressView, (counted, unit): (&str, &str), snapshot: &Snapshot) -> String {
     let mut parts = Vec::new();
     // before the first is asked for there is nothing to count, and one of one says nothing
     if view.generations > 1 {
@@ -267,16 +271,16 @@ fn describe(view: &ProgressView, (counted, unit): (&str, &str), crew: &Snapshot)
         parts.push(format!("{} failed", view.failed));
     }
     let read_only = view.completed > 0 && view.completed == view.replayed;
-    parts.push(if read_only && crew.workers.is_empty() {
+    parts.push(if read_only && snapshot.workers.is_empty() {
         "all from the journal".to_owned()
     } else {
-        at_work(crew)
+        at_work(snapshot)
     });
-    parts.extend(slot_use(&crew.spent));
-    if let Some(rate) = view.rate(crew.computing) {
+    parts.extend(slot_use(&snapshot.spent));
+    if let Some(rate) = view.rate(snapshot.computing) {
         parts.push(format!("{rate:.1}/s"));
     }
-    if let Some(left) = view.remaining(crew.computing) {
+    if let Some(left) = view.remaining(snapshot.computing) {
         parts.push(format!("{} left", clock(left)));
     }
     parts.join("  ")
@@ -284,13 +288,13 @@ fn describe(view: &ProgressView, (counted, unit): (&str, &str), crew: &Snapshot)
 
 /// Describes the connected workers. Before the first job is dispatched, workers fetch the case and build the
 /// model.
-fn at_work(crew: &Snapshot) -> String {
-    let workers = match crew.workers.len() {
+fn at_work(snapshot: &Snapshot) -> String {
+    let workers = match snapshot.workers.len() {
         0 => return "waiting for workers".to_owned(),
         1 => "1 worker".to_owned(),
         several => format!("{several} workers"),
     };
-    if crew.computing.is_zero() {
+    if snapshot.computing.is_zero() {
         return format!("waiting for {workers} to get ready");
     }
     workers
@@ -355,12 +359,12 @@ mod tests {
             best: Some(0.31239),
         };
         let words = ("generation or stage", " N^2");
-        let mut crew = Snapshot::default();
+        let mut snapshot = Snapshot::default();
         assert_eq!(
-            describe(&ProgressView::default(), words, &crew),
+            describe(&ProgressView::default(), words, &snapshot),
             "waiting for workers"
         );
-        crew.workers.push(WorkerAccount {
+        snapshot.workers.push(WorkerAccount {
             worker: WorkerId(1),
             host: "node-1".to_owned(),
             slots: 1,
@@ -369,22 +373,22 @@ mod tests {
             spent: Spent::default(),
         });
         assert_eq!(
-            describe(&ProgressView::default(), words, &crew),
+            describe(&ProgressView::default(), words, &snapshot),
             "waiting for 1 worker to get ready"
         );
-        crew.computing = Duration::from_secs(20);
+        snapshot.computing = Duration::from_secs(20);
         assert_eq!(
-            describe(&view, words, &crew),
+            describe(&view, words, &snapshot),
             "generation or stage 3 of 60  best 0.3124 N^2  12 failed  1 worker  10.0/s  9 min 44 s left"
         );
-        crew.spent = Spent {
+        snapshot.spent = Spent {
             connected_us: 10_000_000,
             useful_us: 8_950_000,
             barrier_us: 1_000_000,
             starved_us: 50_000,
             ..Spent::default()
         };
-        let line = describe(&view, (words.0, ""), &crew);
+        let line = describe(&view, (words.0, ""), &snapshot);
         assert!(
             line.contains("1 worker  slots 90 % useful, 10 % barrier  10.0/s"),
             "{line}"

@@ -1,13 +1,9 @@
 //! Terminal output: results on standard output, everything else on standard error.
 use crate::cli::argument::output::Output;
-use journal::{Damage, describe_damage};
 use report::document::TerminalStyle;
 use rustix::termios::tcgetwinsize;
 use serde::Serialize;
-use std::{
-    fmt,
-    io::{self, IsTerminal as _, Write as _},
-};
+use std::io::{self, IsTerminal as _, Write as _};
 
 /// Sends log messages of level warning and above to standard error; `HORSEHEAD_LOG` selects another level,
 /// for example `HORSEHEAD_LOG=info`. Messages of Zenoh are off by default, because it logs errors whenever a
@@ -22,17 +18,6 @@ pub(crate) fn diagnostics() {
         .with_target(false)
         .without_time()
         .init();
-}
-
-pub(crate) fn tell(text: &str) {
-    let _gone = writeln!(io::stderr().lock(), "{text}");
-}
-
-/// Prints notes on standard error, one line each.
-pub(crate) fn note(notes: &[impl fmt::Display]) {
-    for note in notes {
-        tell(&format!("note: {note}"));
-    }
 }
 
 /// Prints a result on standard output: a text table or one JSON object.
@@ -85,11 +70,4 @@ pub(crate) fn style() -> TerminalStyle {
 
 fn colourless() -> bool {
     std::env::var_os("NO_COLOR").is_some_and(|set| !set.is_empty())
-}
-
-/// Tells on standard error which stretches of a journal cannot be read.
-pub(crate) fn damage(stretches: &[Damage]) {
-    for stretch in describe_damage(stretches) {
-        tell(&format!("warning: {stretch}"));
-    }
 }

@@ -21,7 +21,7 @@ pub(super) struct Refusals {
 
 impl Refusals {
     /// Logs a failed handshake; `words` is the transport's error message.
-    pub(super) fn tell(&self, from: SocketAddr, words: &str) {
+    pub(super) fn warn(&self, from: SocketAddr, words: &str) {
         if let Some(reason) = reason(words) {
             self.say(from, reason, "");
         } else {

@@ -46,6 +46,7 @@ fn diagnosed(rig: &Rig, cycles: usize) -> Diagnosis {
         unknowns: case.unknowns.clone(),
         records: records.collect(),
         library: descriptors(),
+        families: None,
         start: None,
         usual: Numerics::FROM_CASE,
         finer: Vec::new(),

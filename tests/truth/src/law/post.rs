@@ -7,7 +7,7 @@ use crate::draw::RandomStream;
 use libm::{cos, sin, sqrt};
 use simulation::effect::{Dashpot, Effect, Extensions, Force, Site};
 use simulation::linear::Bordered;
-use simulation::model::Instant;
+use simulation::model::MachineState;
 use simulation::model::description::{AddedMode, Description};
 use std::sync::Arc;
 
@@ -94,7 +94,7 @@ impl FrontPull {
     /// Returns the terms from which force, tangent and potential are built: `P / sqrt(m)`, `y sin(theta)`, `y
     /// cos(theta)`, `sin(theta)` and `cos(theta)`, with load `P`, modal coordinate `y` and beam angle
     /// `theta`.
-    fn parts(&self, at: &Instant<'_>) -> [f64; 5] {
+    fn parts(&self, at: &MachineState<'_>) -> [f64; 5] {
         let (s, c) = (sin(at.q[self.beam]), cos(at.q[self.beam]));
         let y = at.q[self.mode];
         [
@@ -108,13 +108,13 @@ impl FrontPull {
 }
 
 impl Force for FrontPull {
-    fn add(&self, at: &Instant<'_>, force: &mut [f64]) {
+    fn add(&self, at: &MachineState<'_>, force: &mut [f64]) {
         let [pull, along, _, _, c] = self.parts(at);
         force[self.mode] -= pull * c;
         force[self.beam] += pull * along;
     }
 
-    fn add_tangent(&self, at: &Instant<'_>, _: f64, matrix: &mut Bordered) {
+    fn add_tangent(&self, at: &MachineState<'_>, _: f64, matrix: &mut Bordered) {
         // the matrix takes the derivative of the force with the other sign
         let [pull, _, across, s, _] = self.parts(at);
         matrix.add(self.mode, self.beam, -(pull * s));
@@ -122,16 +122,16 @@ impl Force for FrontPull {
         matrix.add(self.beam, self.beam, -(pull * across));
     }
 
-    fn energy(&self, _: &Instant<'_>) -> f64 {
+    fn energy(&self, _: &MachineState<'_>) -> f64 {
         0.0
     }
 
-    fn potential(&self, at: &Instant<'_>) -> f64 {
+    fn potential(&self, at: &MachineState<'_>) -> f64 {
         let [pull, _, across, ..] = self.parts(at);
         pull * across
     }
 
-    fn lost(&self, at: &Instant<'_>) -> f64 {
+    fn lost(&self, at: &MachineState<'_>) -> f64 {
         let [pull, along, _, _, c] = self.parts(at);
         pull * (c * at.v[self.mode] - along * at.v[self.beam])
     }

@@ -6,7 +6,7 @@
 use super::unit::Unit;
 use super::value::{Edit, ParameterValues, Read};
 use crate::model::description::Description;
-use crate::model::extension::{Effect, SampleState};
+use crate::model::extension::Effect;
 use std::borrow::Cow;
 use std::fmt;
 use std::sync::Arc;
@@ -220,11 +220,8 @@ impl Descriptor {
     }
 
     /// Sets a constructor for an effect that only changes gauge readings, sample by sample, by the given
-    /// function.
-    pub(super) fn with_reading(
-        self,
-        read: fn(&ParameterValues, &SampleState, &mut [f64; 4]),
-    ) -> Self {
+    /// function of values, elapsed share of the recorded revolution and readings.
+    pub(super) fn with_reading(self, read: fn(&ParameterValues, f64, &mut [f64; 4])) -> Self {
         self.with_constructor(move |v| Read {
             values: v.clone(),
             read,

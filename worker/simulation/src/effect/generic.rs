@@ -11,7 +11,7 @@ use crate::drive::DriveState;
 use crate::math::elementary::{sin_cos, tanh};
 use crate::math::spline::Splines;
 use crate::model::extension::{Axial, Effect, Extensions, LineForce, LineForceValue, Site, Strain};
-use crate::model::strand::{BACK, FRONT};
+use crate::model::parallel_ropes::{BACK, FRONT};
 use std::f64::consts::TAU;
 
 /// Location where a generic force may act.

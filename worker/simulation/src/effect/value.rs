@@ -48,11 +48,12 @@ impl Effect for Edit {
     }
 }
 
-/// Effect that only changes gauge readings, sample by sample, by a function of the parameter values.
+/// Effect that only changes gauge readings, sample by sample, by a function of the parameter values and of the
+/// elapsed share of the recorded revolution, 0 to 1.
 #[derive(Clone, Debug)]
 pub(super) struct Read {
     pub(super) values: ParameterValues,
-    pub(super) read: fn(&ParameterValues, &SampleState, &mut [f64; 4]),
+    pub(super) read: fn(&ParameterValues, f64, &mut [f64; 4]),
 }
 
 impl Effect for Read {
@@ -63,7 +64,11 @@ impl Effect for Read {
 
 impl Reading for Read {
     fn sample(&self, at: &SampleState, stress: &mut [f64; 4]) {
-        (self.read)(&self.values, at, stress);
+        (self.read)(&self.values, at.elapsed, stress);
+    }
+
+    fn needs_loads(&self) -> bool {
+        false
     }
 }
 

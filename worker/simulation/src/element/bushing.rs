@@ -179,6 +179,15 @@ impl Bushing {
         }
     }
 
+    /// Returns whether every coefficient and the preload are zero.
+    pub(crate) fn is_zero(&self) -> bool {
+        *self
+            == Self {
+                preload: 0.0,
+                ..self.scaled(0.0)
+            }
+    }
+
     fn turns(&self) -> bool {
         let of = self
             .rotational_stiffness

@@ -22,6 +22,29 @@ pub struct LawResponse<T, const N: usize> {
     pub dissipated: T,
 }
 
+impl<T: Real, const N: usize> LawResponse<T, N> {
+    /// Returns the response of a share of the element: every quantity times `share`.
+    #[expect(
+        clippy::inline_always,
+        reason = "compiled for each set of instructions; what is not used is not computed"
+    )]
+    #[inline(always)]
+    #[must_use]
+    pub fn scaled(&self, share: f64) -> Self {
+        let mut all = *self;
+        for r in 0..N {
+            all.force[r] = all.force[r] * share;
+            for s in 0..N {
+                all.stiffness[r][s] = all.stiffness[r][s] * share;
+                all.damping[r][s] = all.damping[r][s] * share;
+            }
+        }
+        all.energy = all.energy * share;
+        all.dissipated = all.dissipated * share;
+        all
+    }
+}
+
 /// Law of the forces of an element with `N` deformations and `C` coefficients.
 ///
 /// [`contract`](super) checks every law: stiffness, damping and the derivatives with respect to coefficients

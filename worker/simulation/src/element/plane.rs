@@ -119,19 +119,18 @@ impl<T: Real> PlaneJoint<T> {
     }
 
     /// Returns the joint's stiffness and its damping by the coordinates of both rods, under the response of its
-    /// law.
+    /// law, in which each force depends on its own deformation alone: other derivatives are not read.
     #[inline(always)]
     pub fn tangents(&self, law: &LawResponse<T, DEFORMATIONS>) -> [PlaneTangent<T>; 2] {
         let ([ex, ey], [cosine, sine]) = (self.axis, self.turned);
         let (half, spin) = (self.half, self.spin);
         let [extension, shear, _] = self.deformation;
         let [stretching, shearing, turning] = self.rate;
-        let (zero, one) = (ex.constant(0.0), ex.constant(1.0));
-        // rows: deformations; columns: x, y and angle of I, angle of J
+        let zero = ex.constant(0.0);
+        // rows: extension and shear; columns: x, y and angle of I, angle of J
         let by = [
             [ex, ey, sine * half, shear],
             [-ey, ex, -(cosine * half), -(extension + half)],
-            [zero, zero, one, -one],
         ];
         let by_rate = [
             [-(spin * ey), spin * ex, cosine * half * turning, shearing],
@@ -141,7 +140,6 @@ impl<T: Real> PlaneJoint<T> {
                 sine * half * turning,
                 -stretching,
             ],
-            [zero; INDEPENDENT],
         ];
         let [along, across, _] = law.force;
         let swing = (along * cosine + across * sine) * half;
@@ -155,22 +153,26 @@ impl<T: Real> PlaneJoint<T> {
             [x, y, -swing, last],
         ];
         let mut damping = [[zero; INDEPENDENT]; INDEPENDENT];
-        for r in 0..DEFORMATIONS {
-            let (mut k, mut c) = ([zero; INDEPENDENT], [zero; INDEPENDENT]);
-            for s in 0..DEFORMATIONS {
-                for column in 0..INDEPENDENT {
-                    k[column] = k[column]
-                        + law.stiffness[r][s] * by[s][column]
-                        + law.damping[r][s] * by_rate[s][column];
-                    c[column] = c[column] + law.damping[r][s] * by[s][column];
+        for (r, (by, by_rate)) in by.into_iter().zip(by_rate).enumerate() {
+            let (spring, damper) = (law.stiffness[r][r], law.damping[r][r]);
+            for column in 0..INDEPENDENT {
+                let c = damper * by[column];
+                let k = spring * by[column] + damper * by_rate[column];
+                for row in 0..INDEPENDENT {
+                    stiffness[row][column] = stiffness[row][column] + by[row] * k;
+                    damping[row][column] = damping[row][column] + by[row] * c;
                 }
             }
-            for row in 0..INDEPENDENT {
-                for column in 0..INDEPENDENT {
-                    stiffness[row][column] = stiffness[row][column] + by[r][row] * k[column];
-                    damping[row][column] = damping[row][column] + by[r][row] * c[column];
-                }
-            }
+        }
+        // the turn is the difference of the two angles
+        for (sum, by) in [
+            (&mut stiffness, law.stiffness[2][2]),
+            (&mut damping, law.damping[2][2]),
+        ] {
+            sum[2][2] = sum[2][2] + by;
+            sum[2][3] = sum[2][3] - by;
+            sum[3][2] = sum[3][2] - by;
+            sum[3][3] = sum[3][3] + by;
         }
         [PlaneTangent(stiffness), PlaneTangent(damping)]
     }

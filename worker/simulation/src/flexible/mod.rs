@@ -18,6 +18,7 @@ mod problem;
 mod reduction;
 mod request;
 mod result;
+mod surface;
 mod sway;
 #[cfg(test)]
 mod tests;
@@ -28,4 +29,4 @@ pub use gauge::Gauge;
 pub use mesh::Mesh;
 pub use reduction::reduce;
 pub use request::{Family, Pair, ReductionRequest, Wrap};
-pub use result::{LeftOut, Mode, Reduction, SwayTables};
+pub use result::{LeftOut, Mode, Reduction, SurfacePoint, SurfaceStress, SwayTables};

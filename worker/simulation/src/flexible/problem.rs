@@ -52,7 +52,7 @@ pub(super) struct ModeOutputs<'a> {
 
 /// Stiffness and mass of the half mesh under the boundary conditions of one symmetry family.
 pub(super) struct Problem<'a> {
-    half: &'a Half,
+    pub(super) half: &'a Half,
     family: Family,
     unknowns: Unknowns,
     pub(super) assembly: Assembly,
@@ -252,6 +252,7 @@ impl<'a> Problem<'a> {
             wrap_gradient: wrapped.gradient,
             wrap_field: wrapped.field,
             wrap_stress: wrapped.stress,
+            surface: None,
             sway: None,
             mass,
             center_of_mass: [total(2, &y) / mass, -total(2, &x) / mass],

@@ -11,6 +11,7 @@ use super::mesh::Half;
 use super::problem::{ModeOutputs, Problem};
 use super::request::{Family, ReductionRequest};
 use super::result::{Reduction, Row};
+use super::surface::surface;
 
 /// Reduces a head to modes and static influence lines.
 ///
@@ -47,13 +48,13 @@ pub fn reduce(request: &ReductionRequest<'_>) -> Result<Reduction, ReductionErro
         let seen = ModeOutputs {
             stations: &stations,
             rows: &rows,
-            fields: request.fields,
+            fields: request.fields || request.surface.is_some(),
         };
         let (found, steps) = problem.modes(count, &coupling, &seen)?;
         modes.extend(found);
         lanczos_steps += steps;
     }
-    let (modes, left_out) = if patterns.is_some() {
+    let (mut modes, left_out) = if patterns.is_some() {
         pick(modes, request.modes)
     } else {
         modes.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
@@ -61,6 +62,15 @@ pub fn reduce(request: &ReductionRequest<'_>) -> Result<Reduction, ReductionErro
         (modes, Vec::new())
     };
     let mut reduction = statics.statics(request, &rim, &stations, &rows)?;
+    if let Some(breaks) = request.surface {
+        let surface = surface(&statics, request, &rim, (breaks, &modes))?;
+        reduction.surface = Some(surface);
+    }
+    if !request.fields {
+        for mode in &mut modes {
+            mode.field = Vec::new();
+        }
+    }
     if let Some(pair) = &request.pair {
         let problem = Problem::new(request, &half, Family::Antisymmetric)?;
         reduction.sway = Some(problem.sway(request, &rim, pair, &rows)?);

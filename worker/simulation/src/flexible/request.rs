@@ -50,6 +50,9 @@ pub struct ReductionRequest<'a> {
     /// Wrapped ropes, as they occur over a revolution, used as load patterns: the modes that couple most to
     /// them and to the beam's motion are kept. If empty, the lowest modes are kept.
     pub patterns: &'a [Wrap],
+    /// Angles between which a uniform line load of the rope is a load of its own, ascending from the rope's fixed end
+    /// \[rad\], if the stress on the surface is to be returned.
+    pub surface: Option<&'a [f64]>,
     /// Whether to return the displacement fields of the modes and of the wrapped rope on all nodes.
     pub fields: bool,
 }

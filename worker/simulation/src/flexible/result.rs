@@ -50,6 +50,8 @@ pub struct Reduction {
     /// Stress at the centre of every element under the wrapped rope \[Pa\]: xx, yy, zz, xy, yz, zx; empty
     /// unless fields are requested.
     pub wrap_stress: Vec<[f64; 6]>,
+    /// Stress on the surface under each load; `None` unless requested.
+    pub surface: Option<SurfaceStress>,
     /// Antisymmetric modes and influence lines for a pair of ropes; `None` for a single rope.
     pub sway: Option<SwayTables>,
     /// Mass of the head \[kg\].
@@ -98,6 +100,30 @@ pub struct SwayTables {
     /// Gauge stress per pair of unit forces along +z at each station, at z = +offset and z = -offset [Pa/N];
     /// s x g.
     pub lateral_influence: Vec<Vec<f64>>,
+}
+
+/// Stress on the surface of the half z >= 0 of a head, under each of l loads.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SurfaceStress {
+    /// Points of the surface, s of them: one at each node, several where faces meet at an edge.
+    pub points: Vec<SurfacePoint>,
+    /// Faces of the surface: indices of the points at their corners; a triangle repeats its last one.
+    pub faces: Vec<[usize; 4]>,
+    /// Stress at the points under each load: xx, yy, zz, xy, yz, zx, l x s. Loads, in this order: 1 N in all, inwards and
+    /// uniform over each interval of the arc \[Pa/N\]; 1 N at the rope's fixed end, inwards and towards increasing psi
+    /// \[Pa/N\]; unit accelerations of the base in x, in y and about the pivot; unit coordinates of the modes.
+    pub stress: Vec<Vec<[f64; 6]>>,
+}
+
+/// Point of the surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SurfacePoint {
+    /// Position of the point \[m\].
+    pub place: [f64; 3],
+    /// Outward unit normal at the point: the mean of its faces.
+    pub normal: [f64; 3],
+    /// Whether the point is held fixed.
+    pub held: bool,
 }
 
 /// Terms of nodal displacements whose sum gives a gauge's reading on the half model.

@@ -5,18 +5,17 @@
 //! v` with `c = h / (1 + 1/2 + ... + 1/k)`. Brenan, Campbell and Petzold (1996), chapter 5. Work is
 //! integrated by the same formula.
 //!
-//! Orders above 2 are not A-stable: modes inside the instability wedge along the imaginary axis grow until
-//! the error test cuts the step down to where they are resolved. The head's modes (0.5 % damping) and the
-//! ropes' axial modes lie in it, so that higher orders cost more steps, not fewer: 434 with orders up to 2,
-//! 77,911 up to 4 on the shipped unit (this crate's README). The default highest order is therefore 2.
+//! Orders above 2 are not offered, because they are not A-stable: modes inside the instability wedge along the
+//! imaginary axis grow until the error test cuts the step down to where they are resolved. The head's modes (0.5 %
+//! damping) and the ropes' axial modes lie in it, so that higher orders cost more steps, not fewer: 434 with orders up
+//! to 2, 77,911 up to 4 on the shipped unit (`docs/measurements.md`).
 use super::newton::{ImplicitStage, Newton};
 use super::step_control::StepControl;
 use super::stepper::{StepResult, Stepper, TimeStep};
 use crate::system::{Equations, Powers, State, System};
 
-/// Highest order offered. It is stable at all steps for a real decaying mode; order 6 is stable only barely
-/// and not in use.
-const HIGHEST: usize = 5;
+/// Highest order offered.
+const HIGHEST: usize = 2;
 /// Number of past states kept, which a predictor of the highest order interpolates.
 const KEPT: usize = HIGHEST + 1;
 
@@ -66,7 +65,7 @@ const fn components(powers: &Powers) -> [f64; 3] {
 }
 
 impl Bdf {
-    /// Creates the method for a highest order (clamped to 1..5), `n` coordinates and the local error allowed
+    /// Creates the method for a highest order (clamped to 1..=2), `n` coordinates and the local error allowed
     /// per step.
     pub fn new(highest: usize, n: usize, tolerance: f64) -> Self {
         let point = Point {
@@ -92,7 +91,7 @@ impl Bdf {
     }
 
     /// Creates the method with a given history `past` (latest state first, at least `order` + 1 states); its
-    /// steps have the fixed order `order` (clamped to 1..5).
+    /// steps have the fixed order `order` (clamped to 1..=2).
     pub fn continuing(order: usize, past: &[State], tolerance: f64) -> Self {
         let n = past.first().map_or(0, |state| state.q.len());
         let mut method = Self::new(order, n, tolerance);

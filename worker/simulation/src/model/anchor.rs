@@ -10,11 +10,11 @@ use crate::element::bushing::{LinkLoad, LinkTangent};
 use crate::linear::Bordered;
 use crate::math::elementary::sin_cos;
 use crate::model::chain::tangent::{Column, EndTangent};
-use crate::model::instant::Instant;
 use crate::model::layout::MAX_MODES;
 use crate::model::machine::Machine;
+use crate::model::machine_state::MachineState;
+use crate::model::parallel_ropes::{AnchorShape, HeadResponse};
 use crate::model::pose::Pose;
-use crate::model::strand::{AnchorShape, HeadResponse};
 use nalgebra::Vector3;
 
 type V3 = Vector3<f64>;
@@ -35,7 +35,7 @@ impl Machine {
     pub(super) fn anchor_tangent(
         &self,
         anchor: &Anchor<'_>,
-        at: &Instant<'_>,
+        at: &MachineState<'_>,
         gamma: f64,
         matrix: &mut Bordered,
     ) {
@@ -127,7 +127,7 @@ impl Machine {
     fn anchor_shapes(
         &self,
         face: Option<&HeadResponse>,
-        at: &Instant<'_>,
+        at: &MachineState<'_>,
     ) -> ([V3; MAX_MODES], V3, V3) {
         let (s, c) = sin_cos(at.q[self.layout.beam()]);
         let mut shapes = [V3::zeros(); MAX_MODES];
@@ -145,7 +145,7 @@ impl Machine {
         &self,
         face: &'a HeadResponse,
         chain: usize,
-        at: &Instant<'_>,
+        at: &MachineState<'_>,
     ) -> Option<AnchorRotation<'a>> {
         let turn = self.end_rotation(face, self.arc(chain).anchor, at)?;
         let [t, r] = turn.axes();

@@ -8,11 +8,11 @@
 //! Gauss points, whose weights divide the cylinder's coefficients.
 use crate::math::elementary::{atan2, sin_cos};
 use crate::math::real::Real;
+use crate::math::spline::Splines;
 use crate::math::spline::sum::WeightedSplines;
-use crate::math::spline::{SplinePosition, Splines};
 use crate::model::description::Arc;
 use crate::model::extension::profile::Profile;
-use nalgebra::{Matrix2, Vector2};
+use nalgebra::Vector2;
 
 type V2 = Vector2<f64>;
 
@@ -94,16 +94,16 @@ pub(crate) fn small_angle<T: Real>(a: [T; 2], b: [T; 2]) -> T {
 
 /// Second derivatives of the penetration of a contact point.
 #[derive(Clone, Copy, Debug)]
-pub struct Curvature {
-    /// Second derivatives of the penetration with respect to the point's position.
-    pub point: Matrix2<f64>,
+pub struct Curvature<T> {
+    /// Second derivatives of the penetration with respect to the point's position; symmetric.
+    pub point: [[T; 2]; 2],
     /// Mixed second derivatives of the penetration with respect to the point's position and the beam angle.
-    pub mixed: V2,
+    pub mixed: [T; 2],
     /// Second derivative of the penetration with respect to the beam angle.
-    pub beam: f64,
+    pub beam: T,
     /// Derivatives of the arc angle with respect to the point and the beam angle; multiplied by the slope of
     /// a mode's shape they give the mixed derivatives of the penetration with respect to that mode.
-    pub angle_by: (V2, f64),
+    pub angle_by: ([T; 2], T),
 }
 
 impl<'a> Surface<'a> {
@@ -136,42 +136,59 @@ impl<'a> Surface<'a> {
     }
 
     /// Returns the second derivatives of a contact point's penetration. The point is at the vector `toward`
-    /// from the arc's centre, at arc angle `angle`, and at `place` on the grid of the mode shapes, where the
-    /// surface's height has the derivative `s1` with respect to the arc angle [m/rad].
-    #[expect(clippy::inline_always, reason = "too much to be handed over by copies")]
+    /// from the arc's centre, where the surface's height has the derivatives `s1` and `s2` with respect to the
+    /// arc angle [m/rad, m/rad^2].
+    #[expect(
+        clippy::inline_always,
+        reason = "compiled for each set of instructions"
+    )]
     #[inline(always)]
-    pub fn curvature(&self, toward: &V2, angle: f64, place: &SplinePosition, s1: f64) -> Curvature {
-        let r = toward.norm();
-        let n = toward * (1.0 / r);
-        let t = V2::new(-n.y, n.x);
-        let s2 = self.second_derivative(angle, place);
-        let c = self.center_by_beam;
-        // C - O turned by the beam: d2C/dtheta2 = -(C - O)
-        let arm = self.center;
-        let tt = t * t.transpose();
-        let nt = n * t.transpose();
-        let angle_by_point = t / r;
-        let angle_by_beam = -1.0 - t.dot(&c) / r;
-        let point = tt * (s2 / (r * r) - 1.0 / r) - (nt + nt.transpose()) * (s1 / (r * r));
-        // the point's distance and angle depend on g - C(theta) only, s also on theta itself
-        let rigid = tt * (-1.0 / r) - (nt + nt.transpose()) * (s1 / (r * r));
-        let mixed = -(rigid * c) + angle_by_point * (s2 * angle_by_beam);
-        let beam = c.dot(&(rigid * c)) + s2 * angle_by_beam * angle_by_beam - n.dot(&arm)
-            + s1 * t.dot(&arm) / r;
+    pub fn curvature<T: Real>(&self, toward: [T; 2], [s1, s2]: [T; 2]) -> Curvature<T> {
+        // closures would not always be inlined
+        let one = s1.constant(1.0);
+        let (c, arm) = (self.center_by_beam, self.center);
+        let r = (toward[0] * toward[0] + toward[1] * toward[1]).sqrt();
+        let inverse = one / r;
+        let (nx, ny) = (toward[0] * inverse, toward[1] * inverse);
+        let (tx, ty) = (-ny, nx);
+        let angle_by_point = [tx / r, ty / r];
+        let angle_by_beam = -one - (tx * c.x + ty * c.y) / r;
+        let square = r * r;
+        let [round, bent, tilt] = [-one / r, s2 / square - inverse, s1 / square];
+        let tilted = [
+            (nx * tx + nx * tx) * tilt,
+            (nx * ty + ny * tx) * tilt,
+            (ny * ty + ny * ty) * tilt,
+        ];
+        let [xx, xy, yy] = [tx * tx, tx * ty, ty * ty];
+        // the point's distance and angle depend on g - C(theta) only, s also on theta itself; C - O turned by the
+        // beam: d2C/dtheta2 = -(C - O)
+        let rigid = [
+            xx * round - tilted[0],
+            xy * round - tilted[1],
+            yy * round - tilted[2],
+        ];
+        let turned = [
+            rigid[0] * c.x + rigid[1] * c.y,
+            rigid[1] * c.x + rigid[2] * c.y,
+        ];
+        let rising = s2 * angle_by_beam;
+        let beam = turned[0] * c.x + turned[1] * c.y + rising * angle_by_beam
+            - (nx * arm.x + ny * arm.y)
+            + s1 * (tx * arm.x + ty * arm.y) / r;
+        let [xx, xy, yy] = [
+            xx * bent - tilted[0],
+            xy * bent - tilted[1],
+            yy * bent - tilted[2],
+        ];
         Curvature {
-            point,
-            mixed,
+            point: [[xx, xy], [xy, yy]],
+            mixed: [
+                angle_by_point[0] * rising - turned[0],
+                angle_by_point[1] * rising - turned[1],
+            ],
             beam,
             angle_by: (angle_by_point, angle_by_beam),
         }
-    }
-
-    /// Returns the second derivative of the surface's height with respect to the arc angle [m/rad^2].
-    #[expect(clippy::inline_always, reason = "too much to be handed over by copies")]
-    #[inline(always)]
-    fn second_derivative(&self, angle: f64, place: &SplinePosition) -> f64 {
-        let modes = self.bend.as_ref();
-        let modes = modes.map_or(0.0, |bend| bend.sum.at(bend.shapes, place).0.second);
-        modes + self.profile.map_or(0.0, |profile| profile.height(angle)[2])
     }
 }

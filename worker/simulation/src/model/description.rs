@@ -146,6 +146,9 @@ pub struct Head {
     pub influence_start: f64,
     /// Angular spacing of the stations of the influence lines \[rad\].
     pub influence_step: f64,
+    /// Ends of the intervals of the arc over which the rope's normal force is recorded, ascending from the rope's
+    /// fixed end \[rad\]; what lies beyond belongs to the first or last interval.
+    pub load_breaks: Vec<f64>,
     /// Gauge stress per unit of inward normal force at each of s' stations of the influence lines [Pa/N]; 4 x
     /// s'.
     pub normal_influence: Vec<Vec<f64>>,

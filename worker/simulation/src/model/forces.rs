@@ -1,19 +1,21 @@
 //! Generalised forces, inertia forces and energies of a machine, and the powers for its energy balance.
 //!
 //! The equations of motion are `M(q) a = Q(q, v, t)`; this module computes `Q` and `M a`.
-use crate::element::bushing::{PLANE_COEFFICIENTS, PRELOAD_INDEX};
+use crate::element::bushing::{LinkLoad, Marker, PRELOAD_INDEX};
 use crate::element::impact::DerivativeVariable;
 use crate::linear::MatrixEntry;
 use crate::math::elementary::sin_cos;
 use crate::math::spline::sum::WeightedSplines;
 use crate::model::chain::parts::Joints;
 use crate::model::chain::state::ChainState;
+use crate::model::chain::unit_loads::UnitLoads;
 use crate::model::contact::{Deflection, Surface};
 use crate::model::extension::Extensions;
-use crate::model::instant::Instant;
+use crate::model::force_buffers::ForceBuffers;
 use crate::model::machine::Machine;
-use crate::model::scratch::Scratch;
-use crate::model::strand::BACK;
+use crate::model::machine_state::MachineState;
+use crate::model::parallel_ropes::BACK;
+use crate::model::ropes::Ropes;
 use crate::system::Powers;
 use nalgebra::{Vector2, Vector3};
 
@@ -70,7 +72,7 @@ impl Terms {
 )]
 impl Machine {
     /// Computes the poses of all cylinders and the deflection of the back head's arc into `scratch`.
-    pub(crate) fn pose(&self, q: &[f64], v: &[f64], scratch: &mut Scratch) {
+    pub(crate) fn pose(&self, q: &[f64], v: &[f64], scratch: &mut ForceBuffers) {
         self.deflect(q, v, scratch);
         for (chain, state) in self.chains.iter().zip(&mut scratch.chains) {
             chain.pose(q, v, state);
@@ -78,7 +80,7 @@ impl Machine {
     }
 
     /// Computes the deflection of the back head's arc into `scratch`.
-    fn deflect(&self, q: &[f64], v: &[f64], scratch: &mut Scratch) {
+    fn deflect(&self, q: &[f64], v: &[f64], scratch: &mut ForceBuffers) {
         let modal = self.layout.beam() + 1..;
         let (q, v) = (&q[modal.clone()], &v[modal]);
         for (face, deflection) in self.faces.iter().zip(&mut scratch.deflection) {
@@ -88,7 +90,12 @@ impl Machine {
 
     /// Computes the generalised forces `Q(q, v, t)` into `force`, and leaves the loads of joints and contacts
     /// in `scratch`.
-    pub(super) fn forces(&self, at: &Instant<'_>, scratch: &mut Scratch, force: &mut [f64]) {
+    pub(super) fn forces(
+        &self,
+        at: &MachineState<'_>,
+        scratch: &mut ForceBuffers,
+        force: &mut [f64],
+    ) {
         for (chain, state) in self.chains.iter().zip(&mut scratch.chains) {
             chain.pose(at.q, at.v, state);
         }
@@ -99,9 +106,9 @@ impl Machine {
     /// `scratch`.
     pub(super) fn posed_forces(
         &self,
-        at: &Instant<'_>,
+        at: &MachineState<'_>,
         terms: Terms,
-        scratch: &mut Scratch,
+        scratch: &mut ForceBuffers,
         force: &mut [f64],
     ) {
         force.fill(0.0);
@@ -123,7 +130,10 @@ impl Machine {
                 } else {
                     chain.add_ends(&joints, state, force);
                 }
-                self.end_forces(k, at, &joints, scratch, force);
+                let loads = &scratch.chains[k].joints;
+                let end = joints.head.map(|head| head.marker);
+                let loads = [loads.first(), loads.last()];
+                self.end_forces(k, at, (end.as_ref(), loads), |i, value| force[i] += value);
             }
             if terms.pulls {
                 chain.add_pulls(&self.joints(k, at), &scratch.chains[k], force);
@@ -150,8 +160,8 @@ impl Machine {
     pub(super) fn forces_of(
         &self,
         extensions: &Extensions,
-        at: &Instant<'_>,
-        (scratch, units): (&Scratch, &[[f64; PLANE_COEFFICIENTS]]),
+        at: &MachineState<'_>,
+        (scratch, units): (&ForceBuffers, &[UnitLoads]),
         force: &mut [f64],
     ) {
         force.fill(0.0);
@@ -159,10 +169,8 @@ impl Machine {
         for (k, chain) in self.chains.iter().enumerate() {
             let axial = self.axial(extensions, k, at);
             let uniform = axial.and_then(|laws| laws.uniform());
-            if let (Some(pull), Some(units)) = (uniform, units.get(chain.range())) {
-                for (force, units) in force[chain.range()].iter_mut().zip(units) {
-                    *force += pull * units[PRELOAD_INDEX];
-                }
+            if let (Some(pull), Some(units)) = (uniform, units.get(k)) {
+                units.add_inner((PRELOAD_INDEX, pull), &mut force[chain.range()], |x| x);
             } else if axial.is_some() {
                 let joints = Joints {
                     axial,
@@ -178,9 +186,9 @@ impl Machine {
     /// `scratch` that are in compression.
     pub(super) fn contact_by(
         &self,
-        at: &Instant<'_>,
+        at: &MachineState<'_>,
         (by, heads): (DerivativeVariable, [bool; 2]),
-        scratch: &mut Scratch,
+        scratch: &mut ForceBuffers,
         force: &mut [f64],
     ) {
         force.fill(0.0);
@@ -200,8 +208,8 @@ impl Machine {
     /// with the same result as [`Self::forces`].
     pub(crate) fn back_head_loads(
         &self,
-        at: &Instant<'_>,
-        scratch: &mut Scratch,
+        at: &MachineState<'_>,
+        scratch: &mut ForceBuffers,
         force: &mut [f64],
     ) {
         force.fill(0.0);
@@ -223,8 +231,8 @@ impl Machine {
 
     /// Adds to `force` the weights of the rigid bodies and the loads on them, and the elastic, damping and
     /// weight forces on the head's modes.
-    fn weights(&self, at: &Instant<'_>, force: &mut [f64]) {
-        let &Instant { q, v, drive, .. } = at;
+    fn weights(&self, at: &MachineState<'_>, force: &mut [f64]) {
+        let &MachineState { q, v, drive, .. } = at;
         let d = &self.description;
         let g = d.gravity;
         let rod = self.layout.rod();
@@ -248,42 +256,85 @@ impl Machine {
     }
 
     /// Adds the forces that the end joints of a chain exert on the rod or suspension, on the beam and on the
-    /// modes of the back head.
+    /// modes of the back head, through `add` with the index of a coordinate and its force. `base` and `head`
+    /// are the loads of the two joints, `end` is the marker on the head.
     fn end_forces(
         &self,
         chain: usize,
-        at: &Instant<'_>,
-        joints: &Joints<'_>,
-        scratch: &Scratch,
-        force: &mut [f64],
+        at: &MachineState<'_>,
+        (end, [base, head]): (Option<&Marker>, [Option<&LinkLoad>; 2]),
+        mut add: impl FnMut(usize, f64),
     ) {
-        let loads = &scratch.chains[chain].joints;
-        if self.strands[chain].rope == BACK {
-            force[self.layout.rod()] += loads[0].torque_j.z;
-        } else {
-            force[self.layout.suspension()] -= loads[0].force.y;
+        if let Some(load) = base {
+            if self.strands[chain].rope == BACK {
+                add(self.layout.rod(), load.torque_j.z);
+            } else {
+                add(self.layout.suspension(), -load.force.y);
+            }
         }
-        let (Some(load), Some(head)) = (loads.last(), joints.head) else {
+        let (Some(load), Some(i)) = (head, end) else {
             return;
         };
-        let i = head.marker;
         let beam = self.layout.beam();
-        force[beam] += load.torque_i.z + i.p.x * load.force.y - i.p.y * load.force.x;
+        let on_beam = load.torque_i.z + i.p.x * load.force.y - i.p.y * load.force.x;
+        add(beam, on_beam);
         let Some(face) = self.faces.get(chain) else {
             return;
         };
         let (s, c) = sin_cos(at.q[beam]);
         for (k, shape) in face.anchor.iter().enumerate() {
             let [x, y, _] = shape.moves;
-            force[self.layout.mode(k)] +=
-                load.force.x * (c * x - s * y) + load.force.y * (s * x + c * y);
+            let pressed = load.force.x * (c * x - s * y) + load.force.y * (s * x + c * y);
+            add(self.layout.mode(k), pressed);
         }
         if let Some(turn) = self.end_rotation(face, self.arc(chain).anchor, at) {
             let moments = turn.axes().map(|axis| load.torque_i.dot(&axis));
             for (k, shape) in face.anchor.iter().enumerate() {
                 let turned = shape.turns[0] * moments[0] + shape.turns[1] * moments[1];
-                force[self.layout.mode(k)] += load.force.z * shape.moves[2] + turned;
+                add(self.layout.mode(k), load.force.z * shape.moves[2] + turned);
             }
+        }
+    }
+
+    /// Computes the loads of all rope joints per unit of each of their coefficients, at the cylinder poses in
+    /// `scratch`, for motion in the plane.
+    pub(super) fn unit_loads(
+        &self,
+        at: &MachineState<'_>,
+        scratch: &ForceBuffers,
+        units: &mut [UnitLoads],
+    ) {
+        for (k, units) in units.iter_mut().enumerate() {
+            units.fill(&self.chains[k], &self.joints(k, at), &scratch.chains[k]);
+        }
+    }
+
+    /// Adds the generalised forces of all rope joints in the plane under the laws of `ropes`, in which one
+    /// coefficient is 1 and all others are zero, times `factor`. `inner` is the index of that coefficient in
+    /// the law of the joints between cylinders and its value there; `None` if they do not depend on it.
+    /// `entry` selects a number of an element of `force`.
+    pub(super) fn add_unit_forces<T>(
+        &self,
+        at: &MachineState<'_>,
+        (ropes, inner): (&Ropes, Option<(usize, f64)>),
+        (units, factor): (&[UnitLoads], f64),
+        force: &mut [T],
+        entry: impl Fn(&mut T) -> &mut f64,
+    ) {
+        for (k, (chain, units)) in self.chains.iter().zip(units).enumerate() {
+            if let Some((coefficient, value)) = inner {
+                let scaled = (coefficient, factor * value);
+                units.add_inner(scaled, &mut force[chain.range()], &entry);
+            }
+            let loads = units.end_loads([&ropes.base, &ropes.anchor]);
+            let mut add = |i: usize, value: f64| *entry(&mut force[i]) += factor * value;
+            for (end, load) in loads.iter().enumerate() {
+                if let Some(load) = load {
+                    chain.add_plane_end(end, load, &mut add);
+                }
+            }
+            let marker = units.ends[1].as_ref().map(|[i, _]| i);
+            self.end_forces(k, at, (marker, loads.each_ref().map(Option::as_ref)), add);
         }
     }
 
@@ -342,7 +393,7 @@ impl Machine {
 
     /// Returns the force that the crank pin exerts on the rod \[N\], from the accelerations and the joint
     /// loads in `scratch`.
-    pub(crate) fn pin_force(&self, at: &Instant<'_>, a: &[f64], scratch: &Scratch) -> V2 {
+    pub(crate) fn pin_force(&self, at: &MachineState<'_>, a: &[f64], scratch: &ForceBuffers) -> V2 {
         let back = &scratch.chains[..self.faces.len()];
         let pull = back.iter().map(|chain| chain.joints[0].force);
         self.pin_force_under(at, a, pull.fold(V3::zeros(), |sum, force| sum + force))
@@ -350,7 +401,7 @@ impl Machine {
 
     /// Returns the force that the crank pin exerts on the rod \[N\], given the force `rope` that the back
     /// ropes' base joints exert on their first cylinders.
-    pub(super) fn pin_force_under(&self, at: &Instant<'_>, a: &[f64], rope: V3) -> V2 {
+    pub(super) fn pin_force_under(&self, at: &MachineState<'_>, a: &[f64], rope: V3) -> V2 {
         let rod = &self.description.rod;
         let i = self.layout.rod();
         let (s, c) = sin_cos(at.q[i]);
@@ -364,7 +415,12 @@ impl Machine {
     }
 
     /// Returns input, output and dissipated power at an instant whose loads are in `scratch`.
-    pub(super) fn powers(&self, at: &Instant<'_>, a: &[f64], scratch: &Scratch) -> Powers {
+    pub(super) fn powers(
+        &self,
+        at: &MachineState<'_>,
+        a: &[f64],
+        scratch: &ForceBuffers,
+    ) -> Powers {
         let v = at.v;
         let pin = self.pin_force(at, a, scratch);
         let mut dissipated: f64 = scratch.chains.iter().map(ChainState::losses).sum();
@@ -382,7 +438,7 @@ impl Machine {
     }
 
     /// Evaluates the contact points between ropes and heads at the cylinder poses computed by [`Self::pose`].
-    pub(crate) fn touch(&self, at: &Instant<'_>, scratch: &mut Scratch) {
+    pub(crate) fn touch(&self, at: &MachineState<'_>, scratch: &mut ForceBuffers) {
         for (k, chain) in self.chains.iter().enumerate() {
             let surface = self.surface(k, at.q, at.v, &scratch.deflection);
             chain.evaluate_contact(&surface, &at.ropes.contact, &mut scratch.chains[k]);
@@ -391,13 +447,13 @@ impl Machine {
 
     /// Returns kinetic plus potential energy \[J\], without the potential of the load; `scratch` must hold
     /// poses and contact points.
-    pub(super) fn energy(&self, at: &Instant<'_>, scratch: &Scratch) -> f64 {
+    pub(super) fn energy(&self, at: &MachineState<'_>, scratch: &ForceBuffers) -> f64 {
         self.potential(at, scratch) + self.kinetic(at)
     }
 
     /// Returns the elastic and gravitational potential energy of the machine \[J\].
-    pub(super) fn potential(&self, at: &Instant<'_>, scratch: &Scratch) -> f64 {
-        let &Instant { q, drive, .. } = at;
+    pub(super) fn potential(&self, at: &MachineState<'_>, scratch: &ForceBuffers) -> f64 {
+        let &MachineState { q, drive, .. } = at;
         let d = &self.description;
         let g = d.gravity;
         let (rod, beam) = (self.layout.rod(), self.layout.beam());
@@ -424,7 +480,11 @@ impl Machine {
     }
 
     /// Returns the static potential of the effects' forces minus the energy that they store \[J\].
-    pub(crate) fn potential_beyond_energy(&self, at: &Instant<'_>, scratch: &Scratch) -> f64 {
+    pub(crate) fn potential_beyond_energy(
+        &self,
+        at: &MachineState<'_>,
+        scratch: &ForceBuffers,
+    ) -> f64 {
         if self.extensions.is_empty() {
             return 0.0;
         }
@@ -435,8 +495,8 @@ impl Machine {
         along + self.extensions.potential_beyond_energy(at)
     }
 
-    fn kinetic(&self, at: &Instant<'_>) -> f64 {
-        let &Instant { q, v, drive, .. } = at;
+    fn kinetic(&self, at: &MachineState<'_>) -> f64 {
+        let &MachineState { q, v, drive, .. } = at;
         // M v through the inertia operator; the rod's part relative to the moving pin is added
         let mut momentum = vec![0.0; v.len()];
         self.subtract_inertia(q, v, &mut momentum);

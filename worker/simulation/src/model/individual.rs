@@ -1,15 +1,15 @@
 //! Equations of motion of a machine with the ropes and the drive of one individual.
 use crate::drive::{Drive, DriveState};
-use crate::element::bushing::PLANE_COEFFICIENTS;
 use crate::element::impact::DerivativeVariable;
 use crate::linear::{Bordered, MatrixEntry};
 use crate::math::elementary::sin_cos;
+use crate::model::chain::unit_loads::UnitLoads;
 use crate::model::extension::Extensions;
+use crate::model::force_buffers::ForceBuffers;
 use crate::model::forces::Terms;
-use crate::model::instant::Instant;
 use crate::model::machine::Machine;
+use crate::model::machine_state::MachineState;
 use crate::model::ropes::Ropes;
-use crate::model::scratch::Scratch;
 use crate::norm::{ANGLE, LENGTH, MODAL, cylinders_error, cylinders_newton, square, worst};
 use crate::system::{Equations, LoadedState, Loads, Powers, State, StateRef, StateShift, Static};
 use nalgebra::{Vector2, Vector3};
@@ -24,7 +24,7 @@ pub struct RopeMachine<'a> {
     /// Crank motion and suspension load over time.
     pub drive: Drive,
     /// Poses and loads of the last force evaluation.
-    pub scratch: Scratch,
+    pub scratch: ForceBuffers,
     load_share: f64,
     at: (f64, DriveState),
 }
@@ -33,7 +33,7 @@ impl<'a> RopeMachine<'a> {
     /// Creates the equations of motion of an individual from machine, ropes and drive, and allocates their
     /// buffers.
     pub fn new(machine: &'a Machine, ropes: Ropes, drive: Drive) -> Self {
-        Self::within(machine, ropes, drive, Scratch::new(machine))
+        Self::within(machine, ropes, drive, ForceBuffers::new(machine))
     }
 
     /// Creates the equations of motion as [`Self::new`] does, but reuses the buffers of an individual with
@@ -42,7 +42,7 @@ impl<'a> RopeMachine<'a> {
         machine: &'a Machine,
         ropes: Ropes,
         drive: Drive,
-        scratch: Scratch,
+        scratch: ForceBuffers,
     ) -> Self {
         Self {
             machine,
@@ -69,7 +69,7 @@ impl<'a> RopeMachine<'a> {
         }
     }
 
-    fn instant<'s>(&'s self, at: StateRef<'s>) -> Instant<'s> {
+    fn instant<'s>(&'s self, at: StateRef<'s>) -> MachineState<'s> {
         instant(&self.ropes, &self.at.1, at)
     }
 
@@ -153,6 +153,14 @@ impl<'a> RopeMachine<'a> {
         }
     }
 
+    /// Returns the loads of the last evaluation, which must have been one of all loads at the state `at`.
+    pub(crate) const fn held_loads<'s>(&'s self, at: StateRef<'s>) -> BackHeadLoads<'s, 'a> {
+        BackHeadLoads {
+            individual: self,
+            at,
+        }
+    }
+
     /// Computes all loads, including those that the back head's stress depends on; `force` receives the
     /// generalised forces.
     pub(crate) fn all_loads<'s>(
@@ -176,12 +184,12 @@ impl<'a> RopeMachine<'a> {
     }
 
     /// Computes the generalised forces of extensions that are not part of this machine, using the poses of the
-    /// last evaluation. `units` are the result of [`Self::joint_units`], or empty.
+    /// last evaluation. `units` are the result of [`Self::unit_loads`], or empty.
     pub(crate) fn forces_of(
         &mut self,
         extensions: &Extensions,
         at: StateRef<'_>,
-        units: &[[f64; PLANE_COEFFICIENTS]],
+        units: &[UnitLoads],
         force: &mut [f64],
     ) {
         self.move_to(at.t);
@@ -190,13 +198,28 @@ impl<'a> RopeMachine<'a> {
             .forces_of(extensions, &instant, (&self.scratch, units), force);
     }
 
-    /// Computes the generalised forces of all joints between cylinders per unit of each joint coefficient, at
-    /// the poses of the last evaluation in the plane; zeros for motion in space.
-    pub(crate) fn joint_units(&self, units: &mut [[f64; PLANE_COEFFICIENTS]]) {
-        units.fill([0.0; PLANE_COEFFICIENTS]);
-        for (chain, state) in self.machine.chains.iter().zip(&self.scratch.chains) {
-            chain.add_plane_units(&self.ropes.joint, state, units);
-        }
+    /// Computes the loads of all rope joints per unit of each of their coefficients, at the poses of the last
+    /// evaluation in the plane: one element per chain, or none, if they are not required.
+    pub(crate) fn unit_loads(&mut self, at: StateRef<'_>, units: &mut [UnitLoads]) {
+        self.move_to(at.t);
+        let instant = instant(&self.ropes, &self.at.1, at);
+        self.machine.unit_loads(&instant, &self.scratch, units);
+    }
+
+    /// Adds `factor` times the generalised forces of all rope joints under unit coefficients; see
+    /// [`Machine::add_unit_forces`].
+    pub(crate) fn add_unit_forces<T>(
+        &mut self,
+        at: StateRef<'_>,
+        unit: (&Ropes, Option<(usize, f64)>),
+        units: (&[UnitLoads], f64),
+        force: &mut [T],
+        entry: impl Fn(&mut T) -> &mut f64,
+    ) {
+        self.move_to(at.t);
+        let instant = instant(&self.ropes, &self.at.1, at);
+        self.machine
+            .add_unit_forces(&instant, unit, units, force, entry);
     }
 
     /// Computes the derivative of the contact forces on the selected heads with respect to a contact
@@ -265,8 +288,12 @@ impl<'s, 'a> BackHeadLoads<'s, 'a> {
     }
 }
 
-const fn instant<'s>(ropes: &'s Ropes, drive: &'s DriveState, at: StateRef<'s>) -> Instant<'s> {
-    Instant {
+const fn instant<'s>(
+    ropes: &'s Ropes,
+    drive: &'s DriveState,
+    at: StateRef<'s>,
+) -> MachineState<'s> {
+    MachineState {
         ropes,
         drive,
         q: at.q,

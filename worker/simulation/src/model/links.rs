@@ -7,9 +7,9 @@ use crate::model::chain::parts::{EndJoint, Joints};
 use crate::model::description::Arc;
 use crate::model::extension::Extensions;
 use crate::model::extension::axial::{AxialLaws, RopeProperties};
-use crate::model::instant::Instant;
 use crate::model::machine::Machine;
-use crate::model::strand::{BACK, HeadResponse, Strand};
+use crate::model::machine_state::MachineState;
+use crate::model::parallel_ropes::{BACK, HeadResponse, ParallelRope};
 use nalgebra::{Matrix3, Vector3};
 
 type V3 = Vector3<f64>;
@@ -31,7 +31,7 @@ impl Machine {
 
     /// Returns the joints of a chain at an instant: inner joints, both end joints, and the axial laws of
     /// effects.
-    pub(crate) fn joints<'a>(&'a self, chain: usize, at: &Instant<'a>) -> Joints<'a> {
+    pub(crate) fn joints<'a>(&'a self, chain: usize, at: &MachineState<'a>) -> Joints<'a> {
         Joints {
             inner: &at.ropes.joint,
             base: Some(EndJoint {
@@ -53,7 +53,7 @@ impl Machine {
         &self,
         extensions: &'a Extensions,
         chain: usize,
-        at: &Instant<'a>,
+        at: &MachineState<'a>,
     ) -> Option<AxialLaws<'a>> {
         let pitch = self.description.rope.pitch;
         let share = self.rope_share();
@@ -68,7 +68,7 @@ impl Machine {
 
     /// Returns the attachment point (marker) of a chain's base joint, on the crossbeam end of the rod or at
     /// the suspension point.
-    fn base_marker(&self, strand: &Strand, at: &Instant<'_>) -> Marker {
+    fn base_marker(&self, strand: &ParallelRope, at: &MachineState<'_>) -> Marker {
         let (q, v) = (at.q, at.v);
         if strand.rope == BACK {
             let rod = self.layout.rod();
@@ -98,7 +98,7 @@ impl Machine {
     /// The reference point includes the head's deflection, so that the arm remains rigid. If the end also
     /// rotates with the head ([`EndRotation`]), the reference point is the end itself, so that it rotates in
     /// place.
-    pub(crate) fn anchor_marker(&self, chain: usize, at: &Instant<'_>) -> Marker {
+    pub(crate) fn anchor_marker(&self, chain: usize, at: &MachineState<'_>) -> Marker {
         let beam = self.layout.beam();
         let (theta, rate) = (at.q[beam], at.v[beam]);
         let arc = self.arc(chain);
@@ -146,7 +146,7 @@ impl Machine {
         &self,
         face: &HeadResponse,
         anchor: f64,
-        at: &Instant<'_>,
+        at: &MachineState<'_>,
     ) -> Option<EndRotation> {
         face.beside?;
         let (mut angles, mut rates) = ([0.0; 2], [0.0; 2]);

@@ -6,8 +6,8 @@ use crate::model::description::{AddedMode, Description, RopeLaw};
 use crate::model::extension::{Effect, Extensions, Site};
 use crate::model::kinematics::{Mechanism, Position};
 use crate::model::layout::{Layout, Motion};
+use crate::model::parallel_ropes::{BACK, HeadResponse, ParallelRope, faces, strands};
 use crate::model::ropes::Ropes;
-use crate::model::strand::{BACK, HeadResponse, Strand, faces, strands};
 use crate::model::valid::{InvalidDescription, check};
 
 /// Machine under one working condition; immutable and shared by all individuals.
@@ -27,7 +27,7 @@ pub struct Machine {
     pub(crate) card: Splines,
     /// Chains of cylinders, one per rope: those of the back head, then those of the front head.
     pub(crate) chains: Vec<Chain>,
-    pub(crate) strands: Vec<Strand>,
+    pub(crate) strands: Vec<ParallelRope>,
     /// Elastic response of the back head (mode shapes, stress influence lines) for each back rope.
     pub(crate) faces: Vec<HeadResponse>,
     pub(crate) extensions: Extensions,
@@ -146,7 +146,7 @@ impl Machine {
             },
         };
         let strands = strands(d);
-        let chain = |(k, strand): (usize, &Strand)| {
+        let chain = |(k, strand): (usize, &ParallelRope)| {
             let count = [d.rope.back, d.rope.front][strand.rope];
             let density = d.rope.density / layout.ropes as f64;
             let first = layout.first(k);

@@ -9,11 +9,11 @@ use crate::linear::Bordered;
 use crate::math::elementary::sin_cos;
 use crate::model::anchor::Anchor;
 use crate::model::chain::tangent::{Column, EndTangent};
-use crate::model::instant::Instant;
+use crate::model::force_buffers::ForceBuffers;
 use crate::model::machine::Machine;
+use crate::model::machine_state::MachineState;
+use crate::model::parallel_ropes::BACK;
 use crate::model::pose::Pose;
-use crate::model::scratch::Scratch;
-use crate::model::strand::BACK;
 use crate::state::StateShift;
 
 #[expect(
@@ -25,9 +25,9 @@ impl Machine {
     /// a second matrix is given, `-K` into that.
     pub(super) fn tangent(
         &self,
-        at: &Instant<'_>,
+        at: &MachineState<'_>,
         shift: StateShift,
-        scratch: &Scratch,
+        scratch: &ForceBuffers,
         (mut stiffness, matrix): (Option<&mut Bordered>, &mut Bordered),
     ) {
         let gamma = shift.damping;
@@ -66,8 +66,8 @@ impl Machine {
     fn end_tangents(
         &self,
         chain: usize,
-        at: &Instant<'_>,
-        scratch: &Scratch,
+        at: &MachineState<'_>,
+        scratch: &ForceBuffers,
         matrices: &mut [(f64, &mut Bordered)],
     ) {
         let (own, state) = (&self.chains[chain], &scratch.chains[chain]);
@@ -115,8 +115,8 @@ impl Machine {
     }
 
     /// Adds the tangent of weights and of the head's modal stiffness and damping to `matrix`.
-    fn rigid_tangent(&self, at: &Instant<'_>, damping: f64, matrix: &mut Bordered) {
-        let &Instant { q, drive, .. } = at;
+    fn rigid_tangent(&self, at: &MachineState<'_>, damping: f64, matrix: &mut Bordered) {
+        let &MachineState { q, drive, .. } = at;
         let d = &self.description;
         let g = d.gravity;
         let rod = self.layout.rod();

@@ -1,4 +1,4 @@
-use super::{Instant, Machine, RopeMachine, Scratch};
+use super::{ForceBuffers, Machine, MachineState, RopeMachine};
 use crate::drive::{Drive, DriveState};
 use crate::math::elementary::sin_cos;
 use crate::reference;
@@ -42,13 +42,13 @@ fn assert_tangent(machine: &Machine) {
     let drive = drive(0.7);
     let layout = machine.layout;
     let (q, v) = disturbed(machine);
-    let at = Instant {
+    let at = MachineState {
         ropes: &ropes,
         drive: &drive,
         q: &q,
         v: &v,
     };
-    let mut scratch = Scratch::new(machine);
+    let mut scratch = ForceBuffers::new(machine);
     let mut force = vec![0.0; layout.len()];
     machine.forces(&at, &mut scratch, &mut force);
     let touching = |c: &Vec<f64>| c.iter().filter(|&&f| f > 0.0).count() > 3;
@@ -96,19 +96,19 @@ pub(crate) fn free(machine: &Machine) -> impl Iterator<Item = usize> {
 
 /// Returns the central difference of the generalised forces with respect to coordinate `i`, whose rate is
 /// changed by `gamma` times the change of the coordinate.
-fn difference(machine: &Machine, at: &Instant<'_>, i: usize, gamma: f64) -> Vec<f64> {
+fn difference(machine: &Machine, at: &MachineState<'_>, i: usize, gamma: f64) -> Vec<f64> {
     let h = 1e-7;
     let step = |h: f64| {
         let (mut q, mut v) = (at.q.to_vec(), at.v.to_vec());
         q[i] += h;
         v[i] += gamma * h;
         let mut force = vec![0.0; q.len()];
-        let moved = Instant {
+        let moved = MachineState {
             q: &q,
             v: &v,
             ..*at
         };
-        machine.forces(&moved, &mut Scratch::new(machine), &mut force);
+        machine.forces(&moved, &mut ForceBuffers::new(machine), &mut force);
         force
     };
     let (plus, minus) = (step(h), step(-h));
@@ -141,10 +141,10 @@ fn assert_gradient(machine: &Machine) {
     let v = vec![0.0; layout.len()];
     let mut drive = drive(0.0);
     drive.load = 0.0;
-    let mut scratch = Scratch::new(machine);
+    let mut scratch = ForceBuffers::new(machine);
     let mut force = vec![0.0; layout.len()];
     machine.forces(
-        &Instant {
+        &MachineState {
             ropes: &ropes,
             drive: &drive,
             q: &q,
@@ -158,10 +158,10 @@ fn assert_gradient(machine: &Machine) {
         let energy = |h: f64| {
             let mut q = q.clone();
             q[i] += h;
-            let mut scratch = Scratch::new(machine);
+            let mut scratch = ForceBuffers::new(machine);
             let mut force = vec![0.0; layout.len()];
             machine.forces(
-                &Instant {
+                &MachineState {
                     ropes: &ropes,
                     drive: &drive,
                     q: &q,
@@ -171,7 +171,7 @@ fn assert_gradient(machine: &Machine) {
                 &mut force,
             );
             machine.potential(
-                &Instant {
+                &MachineState {
                     ropes: &ropes,
                     drive: &drive,
                     q: &q,
@@ -206,13 +206,13 @@ fn power_of_the_forces_is_what_is_stored_and_lost() {
         let (q, v) = disturbed(&machine);
         let evaluate = |t: f64| {
             let q: Vec<f64> = q.iter().zip(&v).map(|(q, v)| q + t * v).collect();
-            let at = Instant {
+            let at = MachineState {
                 ropes: &ropes,
                 drive: &drive,
                 q: &q,
                 v: &v,
             };
-            let mut scratch = Scratch::new(&machine);
+            let mut scratch = ForceBuffers::new(&machine);
             let mut force = vec![0.0; q.len()];
             machine.forces(&at, &mut scratch, &mut force);
             let power: f64 = force.iter().zip(&v).map(|(force, v)| force * v).sum();

@@ -19,8 +19,24 @@ pub struct Curves {
     pub torque: Vec<f64>,
     /// Modal coordinates of the back head, for each mode.
     pub modal: Vec<Vec<f64>>,
+    /// Loads of the back head; empty unless requested.
+    pub head_loads: HeadLoadCurves,
     /// Shapes of the machine, one at every `shape_every`-th sample (see [`Recorder`](super::Recorder)).
     pub shapes: Vec<Shape>,
+}
+
+/// Loads of the back head, with one value per recorded sample: its stress anywhere is a linear function of them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct HeadLoadCurves {
+    /// Inward normal force of the rope in each interval of the arc (`load_breaks`) \[N\]; the sum for twin ropes.
+    pub normal: Vec<Vec<f64>>,
+    /// Force of the rope's end on the head, inwards and towards increasing psi \[N\].
+    pub anchor: [Vec<f64>; 2],
+    /// Acceleration of the beam frame along its x and y, with gravity as an acceleration upwards [m/s2], and about the
+    /// pivot [rad/s2].
+    pub acceleration: [Vec<f64>; 3],
+    /// Modal coordinates less their static response to these loads [kg^1/2 m].
+    pub beyond: Vec<Vec<f64>>,
 }
 
 /// Positions of the machine's moving bodies and loads of its ropes at one sample, in the world frame W.

@@ -59,11 +59,11 @@ impl Gradient {
     }
 
     /// Returns whether analytic stress derivatives are available for a machine: motion in the plane, one back
-    /// rope, no reading extensions, mode-acceleration recovery.
+    /// rope, no stages of the measuring chain that use loads, mode-acceleration recovery.
     pub(crate) fn available_for(machine: &Machine) -> bool {
         machine.layout.motion == Motion::Plane
             && machine.faces.len() == 1
-            && !machine.extensions.has_readings()
+            && !machine.extensions.readings_need_loads()
             && machine.description.head.recovery == StressRecovery::ModeAcceleration
     }
 

@@ -2,7 +2,7 @@
 use super::stress::gauge_stress;
 use crate::model::RopeMachine;
 use crate::model::extension::SampleState;
-use crate::model::strand::BACK;
+use crate::model::parallel_ropes::BACK;
 use crate::system::State;
 
 /// Returns the readings of the four gauges \[Pa\] at a sample of the recorded revolution.
@@ -15,18 +15,28 @@ pub(crate) fn readings(
     force: &mut [f64],
     part: bool,
 ) -> [f64; 4] {
+    let mut stress = recovered_stress(individual, state, force, part);
+    let extensions = &individual.machine.extensions;
+    if extensions.has_readings() {
+        extensions.read(&sampled(individual, state), &mut stress);
+    }
+    stress
+}
+
+/// Returns the stress at the four gauges \[Pa\], before the measuring chain; arguments as for [`readings`].
+pub(crate) fn recovered_stress(
+    individual: &mut RopeMachine<'_>,
+    state: &State,
+    force: &mut [f64],
+    part: bool,
+) -> [f64; 4] {
     let at = state.motion();
     let loads = if part {
         individual.back_head_loads(at, force)
     } else {
         individual.all_loads(at, force)
     };
-    let mut stress = gauge_stress(&loads, &state.a);
-    let extensions = &individual.machine.extensions;
-    if extensions.has_readings() {
-        extensions.read(&sampled(individual, state), &mut stress);
-    }
-    stress
+    gauge_stress(&loads, &state.a)
 }
 
 /// Returns the quantities that stages of the measuring chain may use, at a state for which the individual

@@ -3,8 +3,9 @@ use super::curves::Curves;
 use super::readings::readings;
 use super::shaft::crank_torque;
 use super::shape::shape;
-use crate::model::strand::{BACK, FRONT};
-use crate::model::{Instant, Machine, RopeMachine};
+use super::stress::record_head_loads;
+use crate::model::parallel_ropes::{BACK, FRONT};
+use crate::model::{Machine, MachineState, RopeMachine};
 use crate::run::Observe;
 use crate::system::{State, System};
 
@@ -15,6 +16,7 @@ pub struct Recorder {
     pub curves: Curves,
     gauges_only: bool,
     shape_every: usize,
+    with_head_loads: bool,
     force: Vec<f64>,
 }
 
@@ -27,12 +29,19 @@ impl Recorder {
         }
     }
 
-    /// Creates a recorder of all curves, and of the machine's shape at every `shape_every`-th sample.
+    /// Creates a recorder of all curves but the loads of the back head, and of the machine's shape at every `shape_every`-th sample.
     pub fn everything(shape_every: usize) -> Self {
         Self {
             shape_every,
             ..Self::default()
         }
+    }
+
+    /// Returns the recorder with the loads of the back head recorded too.
+    #[must_use]
+    pub const fn with_head_loads(mut self) -> Self {
+        self.with_head_loads = true;
+        self
     }
 }
 
@@ -51,8 +60,12 @@ impl Observe for Recorder {
             return;
         }
         let system = &mut system.equations;
+        if self.with_head_loads {
+            let loads = system.held_loads(state.motion());
+            record_head_loads(&mut self.curves.head_loads, &loads, &state.a);
+        }
         let drive = system.drive_state(state.t);
-        let at = Instant {
+        let at = MachineState {
             ropes: &system.ropes,
             drive: &drive,
             q: &state.q,

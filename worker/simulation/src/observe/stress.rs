@@ -1,9 +1,10 @@
 //! Gauge stress of a state, recovered from modes and forces.
+use super::curves::HeadLoadCurves;
 use crate::math::elementary::sin_cos;
 use crate::model::chain::ChainState;
 use crate::model::description::StressRecovery;
 use crate::model::layout::MAX_MODES;
-use crate::model::strand::HeadResponse;
+use crate::model::parallel_ropes::HeadResponse;
 use crate::model::{BackHeadLoads, Machine};
 use crate::system::StateRef;
 
@@ -20,6 +21,64 @@ pub fn gauge_stress(loads: &BackHeadLoads<'_, '_>, a: &[f64]) -> [f64; 4] {
     match machine.description.head.recovery {
         StressRecovery::ModeAcceleration => mode_acceleration(loads, a),
         StressRecovery::ModeDisplacement => mode_displacement(machine, loads.state()),
+    }
+}
+
+/// Returns the acceleration of the beam frame that the head's inertia and weight respond to: along x and y of the
+/// frame, gravity as an acceleration upwards [m/s2], and about the pivot [rad/s2].
+fn base_acceleration(machine: &Machine, state: StateRef<'_>, a: &[f64]) -> [f64; 3] {
+    let beam = machine.layout.beam();
+    let (s, c) = sin_cos(state.q[beam]);
+    let g = machine.description.gravity;
+    [g * s, g * c, a[beam]]
+}
+
+/// Adds the loads of the back head at a state under accelerations `a` to its curves: as in mode acceleration, the modes
+/// count by what they exceed their static response.
+pub(super) fn record_head_loads(
+    curves: &mut HeadLoadCurves,
+    loads: &BackHeadLoads<'_, '_>,
+    a: &[f64],
+) {
+    let (machine, state) = (loads.individual().machine, loads.state());
+    let (head, layout) = (&machine.description.head, machine.layout);
+    let breaks = &head.load_breaks;
+    let intervals = breaks.len().saturating_sub(1);
+    curves.normal.resize(intervals, Vec::new());
+    for curve in &mut curves.normal {
+        curve.push(0.0);
+    }
+    let sample = curves.acceleration[0].len();
+    for curve in &mut curves.anchor {
+        curve.push(0.0);
+    }
+    let mut modal_force = [0.0; MAX_MODES];
+    for chain in 0..machine.faces.len() {
+        let load = HeadLoad::new(loads, chain);
+        load.add_modal(&mut modal_force[..layout.modes]);
+        for (angle, force) in load.back.points.forces() {
+            let inside = breaks.partition_point(|from| *from <= angle);
+            let interval = inside.saturating_sub(1).min(intervals.saturating_sub(1));
+            if let Some(curve) = curves.normal.get_mut(interval) {
+                curve[sample] += force;
+            }
+        }
+        for (curve, force) in curves.anchor.iter_mut().zip(load.at_anchor()) {
+            curve[sample] += force;
+        }
+    }
+    let base = base_acceleration(machine, state, a);
+    for (curve, acceleration) in curves.acceleration.iter_mut().zip(base) {
+        curve.push(acceleration);
+    }
+    curves.beyond.resize(layout.modes, Vec::new());
+    for (m, curve) in curves.beyond.iter_mut().enumerate() {
+        let inertia = base.iter().zip(&head.participation[m]);
+        let inertia: f64 = inertia
+            .map(|(acceleration, share)| acceleration * share)
+            .sum();
+        let w = head.frequencies[m];
+        curve.push(state.q[layout.mode(m)] - (modal_force[m] - inertia) / (w * w));
     }
 }
 
@@ -49,11 +108,7 @@ fn mode_acceleration(loads: &BackHeadLoads<'_, '_>, a: &[f64]) -> [f64; 4] {
         load.add_modal(&mut modal_force[..modes]);
     }
 
-    // gravity acts like a base acceleration upwards, seen from the beam
-    let beam = layout.beam();
-    let (s, c) = sin_cos(state.q[beam]);
-    let g = machine.description.gravity;
-    let base = [g * s, g * c, a[beam]];
+    let base = base_acceleration(machine, state, a);
     let base_stress = [
         &head.weight_stress[0],
         &head.weight_stress[1],
@@ -114,6 +169,13 @@ impl<'a> HeadLoad<'a> {
         }
     }
 
+    /// Returns the force of the rope's end on the head, inwards and towards increasing psi \[N\].
+    fn at_anchor(&self) -> [f64; 2] {
+        let pull = self.pull;
+        let (sa, ca) = sin_cos(self.machine.description.back_arc.anchor);
+        [-(pull[0] * ca + pull[1] * sa), pull[1] * ca - pull[0] * sa]
+    }
+
     /// Adds the static gauge stress caused by the rope's loads on the head, from influence lines.
     fn add_stress(&self, stress: &mut [f64; 4]) {
         let Self { face, pull, .. } = self;
@@ -126,9 +188,7 @@ impl<'a> HeadLoad<'a> {
             }
         }
         let anchor = self.machine.description.back_arc.anchor;
-        let (sa, ca) = sin_cos(anchor);
-        let inward = -(pull[0] * ca + pull[1] * sa);
-        let along = pull[1] * ca - pull[0] * sa;
+        let [inward, along] = self.at_anchor();
         let place = face.normal_influence.place(anchor);
         let place_t = face.tangential_influence.place(anchor);
         for (gauge, stress) in stress.iter_mut().enumerate() {

@@ -10,7 +10,8 @@ use crate::element::law::ForceLaw;
 use crate::integrator::dense::interpolate;
 use crate::model::description::RopeLaw;
 use crate::model::extension::SampleState;
-use crate::model::{Machine, Scratch};
+use crate::model::layout::Motion;
+use crate::model::{ForceBuffers, Machine};
 use crate::observe::Gradient;
 use crate::run::RunSettings;
 use crate::system::State;
@@ -21,12 +22,13 @@ pub(super) struct Sample<'s> {
     pub(super) state: &'s State,
     /// States at both ends of the step that contains the sample.
     pub(super) ends: [&'s State; 2],
-    /// Readings of the four gauges of the simulated machine at the sample \[Pa\].
+    /// Readings of the four gauges of the simulated machine at the sample, and the stress before the measuring
+    /// chain \[Pa\].
     pub(super) own: [f64; 4],
+    pub(super) stress: [f64; 4],
     /// Suspension height \[m\] and net crank torque [N m] at the sample.
     pub(super) shaft: [f64; 2],
-    /// Quantities that reading extensions of perturbed machines may use; present only if the simulated machine has
-    /// no reading extensions itself.
+    /// Quantities that reading extensions of perturbed machines may use; `None` if no column needs them.
     pub(super) known: Option<SampleState>,
     /// Settings of the run, and index of the sample, from which the sample's time follows.
     pub(super) turned: (&'s RunSettings, usize),
@@ -49,8 +51,13 @@ fn by_coefficient<'a>(
 ) -> Source<'a> {
     let factor = LN_10 * *coefficient.of(&mut law.clone());
     match coefficient {
-        // laws along a rope ask for its stiffness, and remember
-        _ if machine.extensions.has_axial() => Source::Difference(ROPES, false, None),
+        // laws along a rope ask for its stiffness; in space they are part of the joints' forces
+        coefficient
+            if machine.extensions.has_axial()
+                && (coefficient == Coefficient::Kb1 || machine.layout.motion == Motion::Space) =>
+        {
+            Source::Difference(ROPES, false, None)
+        }
         Coefficient::Kc => Source::Contact {
             by: DerivativeVariable::Stiffness,
             factor: LN_10 * machine.ropes(law).contact.stiffness,
@@ -69,7 +76,7 @@ fn by_coefficient<'a>(
         | Coefficient::Cb56 => {
             let ropes = machine.ropes(&coefficient.unit(law));
             let unit = PerturbedModel::new(machine, ropes, settings.drive(machine));
-            let coefficients = unit.inner().coefficients();
+            let coefficients = unit.ropes().joint.coefficients();
             let which = coefficients.iter().position(|x| *x != 0.0);
             Source::Joints(Box::new(Joints {
                 unit,
@@ -131,7 +138,7 @@ impl<'a> Active<'a> {
                     Source::Difference(terms, inertia, raised)
                 });
                 let mut all = machines.iter().chain([machine]);
-                let read = all.any(|machine| machine.extensions.has_readings());
+                let read = all.any(|machine| machine.extensions.readings_need_loads());
                 let asked = machines.iter().zip(difference.weights);
                 let asked = asked.filter(|(_, weight)| *weight != 0.0);
                 let sides = asked.map(|(machine, _)| side(machine, law));
@@ -140,7 +147,7 @@ impl<'a> Active<'a> {
                     source,
                     perturbed: sides.collect(),
                     difference: *difference,
-                    explicit: differing.stress || read,
+                    explicit: differing.reading || read,
                     curves,
                 })
             }
@@ -156,16 +163,16 @@ impl<'a> Active<'a> {
         }
     }
 
-    /// Returns the derivative of the gauge readings at a sample with respect to the column's parameter, at a
-    /// fixed state.
+    /// Returns the derivatives of the gauge stress before the measuring chain and of the readings at a sample with
+    /// respect to the column's parameter, at a fixed state; the second without the part that the first causes.
     pub(super) fn explicit(
         &mut self,
         sample: &Sample<'_>,
         gradient: Option<&Gradient>,
-        (scratch, force, beside): (&mut Scratch, &mut [f64], &mut State),
-    ) -> [f64; 4] {
-        let mut sum = [0.0; 4];
-        let mut add = |share: f64, readings: &[f64; 4]| {
+        (scratch, force, beside): (&mut ForceBuffers, &mut [f64], &mut State),
+    ) -> [[f64; 4]; 2] {
+        let [mut stress, mut sum] = [[0.0; 4]; 2];
+        let add = |sum: &mut [f64; 4], share: f64, readings: &[f64; 4]| {
             for (sum, reading) in sum.iter_mut().zip(readings) {
                 *sum += share * reading;
             }
@@ -175,34 +182,34 @@ impl<'a> Active<'a> {
             (Source::Joints(joints), Some(gradient), _) => {
                 let pull = joints.unit.anchor_pull(scratch, sample.state);
                 for (by, pull) in gradient.by_pull.iter().zip(pull) {
-                    add(joints.factor * pull, by);
+                    add(&mut stress, joints.factor * pull, by);
                 }
             }
             (Source::Contact { by, factor }, Some(gradient), _) => {
                 let by_damping = usize::from(*by == DerivativeVariable::Damping);
-                add(*factor, &gradient.by_contact[by_damping]);
+                add(&mut stress, *factor, &gradient.by_contact[by_damping]);
             }
             (Source::Nothing, _, Some(known)) => {
-                add(own, &sample.own);
+                add(&mut sum, own, &sample.own);
                 for (side, share) in self.perturbed.iter().zip(weights) {
-                    let mut read = sample.own;
+                    let mut read = sample.stress;
                     side.machine.extensions.read(known, &mut read);
-                    add(share, &read);
+                    add(&mut sum, share, &read);
                 }
             }
             _ if self.explicit => {
-                add(own, &sample.own);
+                add(&mut sum, own, &sample.own);
                 for (side, share) in self.perturbed.iter_mut().zip(weights) {
                     let (settings, index) = sample.turned;
                     let t = settings.sampled(side.machine, &side.drive, index);
                     let [from, to] = sample.ends;
                     interpolate(from, to, t, beside);
-                    add(share, &side.readings(scratch, beside, force));
+                    add(&mut sum, share, &side.readings(scratch, beside, force));
                 }
             }
             _ => {}
         }
-        sum
+        [stress, sum]
     }
 
     /// Returns the derivative of suspension height and crank torque at a sample with respect to the column's
@@ -210,7 +217,7 @@ impl<'a> Active<'a> {
     pub(super) fn explicit_shaft(
         &mut self,
         sample: &Sample<'_>,
-        (scratch, beside): (&mut Scratch, &mut State),
+        (scratch, beside): (&mut ForceBuffers, &mut State),
     ) -> [f64; 2] {
         let Difference { weights, own, .. } = self.difference;
         let mut sum = [0.0; 2];

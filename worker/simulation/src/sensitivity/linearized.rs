@@ -1,9 +1,9 @@
 //! Linearisation of the equations of one solved stage of a time step.
-use crate::element::bushing::PLANE_COEFFICIENTS;
 use crate::integrator::stepper::Stages;
 use crate::linear::{Bordered, SingularPivot};
 use crate::math::vector::add_scaled;
-use crate::model::{RopeMachine, Scratch};
+use crate::model::chain::unit_loads::UnitLoads;
+use crate::model::{ForceBuffers, RopeMachine};
 use crate::system::{Equations, State, StateShift, System};
 
 /// Linearised stage of a time step: state, matrix `-K'`, factor of `S`, and the buffers of the force
@@ -18,20 +18,21 @@ pub(super) struct Linearized {
     /// Factorisation of the iteration matrix `S = M / c^2 - D / c - K'`, or of `-K` at rest.
     pub(super) factor: Bordered,
     /// Cylinder poses, joint loads and contact at the stage.
-    pub(super) scratch: Scratch,
-    /// Generalised forces of the rope joints per unit of each joint coefficient, for motion in the plane and
-    /// only if a requested derivative needs them.
-    pub(super) units: Vec<[f64; PLANE_COEFFICIENTS]>,
+    pub(super) scratch: ForceBuffers,
+    /// Loads of the rope joints per unit of each coefficient, for motion in the plane and only if a requested
+    /// derivative needs them: one element per chain, or none.
+    pub(super) units: Vec<UnitLoads>,
 }
 
 impl Linearized {
-    pub(super) fn new(equations: &RopeMachine<'_>, state: &State, units: usize) -> Self {
+    pub(super) fn new(equations: &RopeMachine<'_>, state: &State, units: bool) -> Self {
+        let chains = equations.machine.chains.iter();
         Self {
             state: state.clone(),
             stiffness: equations.matrix(),
             factor: equations.matrix(),
-            scratch: Scratch::new(equations.machine),
-            units: vec![[0.0; PLANE_COEFFICIENTS]; units],
+            scratch: ForceBuffers::new(equations.machine),
+            units: chains.filter(|_| units).map(UnitLoads::new).collect(),
         }
     }
 
@@ -97,7 +98,7 @@ impl Linearized {
         loads.exact_tangents(a, shift, matrices);
         system.statistics = kept;
         let individual = &mut system.equations;
-        individual.joint_units(&mut self.units);
+        individual.unit_loads(self.state.motion(), &mut self.units);
         std::mem::swap(&mut individual.scratch, &mut self.scratch);
         // the run's past stays with the run
         let chains = individual.scratch.chains.iter_mut();

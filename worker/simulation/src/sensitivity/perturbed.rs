@@ -1,11 +1,12 @@
 //! Individual with perturbed parameters, used for differences: residuals, memory of axial laws, and gauge
 //! readings.
 use crate::drive::Drive;
-use crate::element::bushing::Bushing;
 use crate::model::extension::{Memory, SampleState};
 use crate::model::forces::Terms;
-use crate::model::{Machine, RopeMachine, Ropes, Scratch};
-use crate::observe::{Gradient, TorqueBy, readings, sampled, shaft, turned_by_ropes};
+use crate::model::{ForceBuffers, Machine, RopeMachine, Ropes};
+use crate::observe::{
+    Gradient, TorqueBy, readings, recovered_stress, sampled, shaft, turned_by_ropes,
+};
 use crate::system::{Equations, State};
 
 /// Individual with perturbed parameters that borrows its buffers for each evaluation.
@@ -28,15 +29,15 @@ impl<'a> PerturbedModel<'a> {
         }
     }
 
-    pub(super) const fn inner(&self) -> &Bushing {
-        &self.ropes.joint
+    pub(super) const fn ropes(&self) -> &Ropes {
+        &self.ropes
     }
 
     /// Calls `ask` with the equations of motion of the perturbed individual, which borrow the given buffers
     /// for the duration of the call.
     pub(super) fn with_buffers<T>(
         &mut self,
-        scratch: &mut Scratch,
+        scratch: &mut ForceBuffers,
         ask: impl FnOnce(&mut RopeMachine<'a>) -> T,
     ) -> T {
         let lent = std::mem::take(scratch);
@@ -48,7 +49,7 @@ impl<'a> PerturbedModel<'a> {
         answer
     }
 
-    fn exchange(&mut self, scratch: &mut Scratch) {
+    fn exchange(&mut self, scratch: &mut ForceBuffers) {
         for (own, chain) in self.memory.iter_mut().zip(&mut scratch.chains) {
             std::mem::swap(own, &mut chain.memory);
         }
@@ -58,7 +59,7 @@ impl<'a> PerturbedModel<'a> {
     /// are in `scratch`.
     pub(super) fn residual(
         &mut self,
-        scratch: &mut Scratch,
+        scratch: &mut ForceBuffers,
         state: &State,
         (terms, inertia): (Terms, bool),
         out: &mut [f64],
@@ -71,8 +72,13 @@ impl<'a> PerturbedModel<'a> {
         });
     }
 
+    /// Returns whether an axial law has memory, once a step has been accepted.
+    pub(super) fn has_memory(&self) -> bool {
+        self.memory.iter().any(|chain| !chain.is_empty())
+    }
+
     /// Updates the memory of axial laws from an accepted state.
-    pub(super) fn remember(&mut self, scratch: &mut Scratch, state: &State) {
+    pub(super) fn remember(&mut self, scratch: &mut ForceBuffers, state: &State) {
         if self.machine.extensions.has_axial() {
             self.with_buffers(scratch, |individual| individual.update_memory(state));
         }
@@ -81,7 +87,7 @@ impl<'a> PerturbedModel<'a> {
     /// Returns the gauge readings of the perturbed individual at a state \[Pa\].
     pub(super) fn readings(
         &mut self,
-        scratch: &mut Scratch,
+        scratch: &mut ForceBuffers,
         state: &State,
         force: &mut [f64],
     ) -> [f64; 4] {
@@ -91,19 +97,21 @@ impl<'a> PerturbedModel<'a> {
         })
     }
 
-    /// Returns the gauge readings \[Pa\] and, if requested, the quantities that stages of the measuring chain
-    /// may use; also computes the derivatives of the gauge stress if `gradient` is given. `room` is workspace
-    /// for a state.
+    /// Returns the stress at the gauges before the measuring chain \[Pa\] and, if requested or if the individual has
+    /// a measuring chain, what its stages may use; also computes the derivatives of the gauge stress if `gradient`
+    /// is given. `room` is workspace for a state.
     pub(super) fn gradient(
         &mut self,
-        scratch: &mut Scratch,
+        scratch: &mut ForceBuffers,
         state: &State,
         (force, room): (&mut [f64], &mut State),
         (known, gradient): (bool, Option<&mut Gradient>),
     ) -> ([f64; 4], Option<SampleState>) {
-        let part = !known && !self.machine.extensions.has_readings();
+        let extensions = &self.machine.extensions;
+        let part = !known && !extensions.readings_need_loads();
+        let known = known || extensions.has_readings();
         self.with_buffers(scratch, |individual| {
-            let stress = readings(individual, state, force, part);
+            let stress = recovered_stress(individual, state, force, part);
             let known = known.then(|| sampled(individual, state));
             if let Some(gradient) = gradient {
                 gradient.fill(individual, state, room);
@@ -113,14 +121,14 @@ impl<'a> PerturbedModel<'a> {
     }
 
     /// Returns suspension height and crank torque; see [`shaft`].
-    pub(super) fn shaft(&mut self, scratch: &mut Scratch, state: &State) -> [f64; 2] {
+    pub(super) fn shaft(&mut self, scratch: &mut ForceBuffers, state: &State) -> [f64; 2] {
         self.with_buffers(scratch, |individual| shaft(individual, state))
     }
 
     /// Computes the derivatives of the torque with respect to the state; `room` is workspace for a state.
     pub(super) fn torque_by(
         &mut self,
-        scratch: &mut Scratch,
+        scratch: &mut ForceBuffers,
         state: &State,
         (by, room): (&mut TorqueBy, &mut State),
     ) {
@@ -128,12 +136,12 @@ impl<'a> PerturbedModel<'a> {
     }
 
     /// Returns the crank torque caused by the force of the back ropes alone [N m].
-    pub(super) fn turned_by_ropes(&mut self, scratch: &mut Scratch, state: &State) -> f64 {
+    pub(super) fn turned_by_ropes(&mut self, scratch: &mut ForceBuffers, state: &State) -> f64 {
         self.with_buffers(scratch, |individual| turned_by_ropes(individual, state))
     }
 
     /// Returns the force of the rope's end on the back head, in the beam frame \[N\].
-    pub(super) fn anchor_pull(&mut self, scratch: &mut Scratch, state: &State) -> [f64; 2] {
+    pub(super) fn anchor_pull(&mut self, scratch: &mut ForceBuffers, state: &State) -> [f64; 2] {
         self.with_buffers(scratch, |individual| individual.anchor_pull(state.motion()))
     }
 }

@@ -82,7 +82,7 @@ impl DerivativePlan {
         columns: &[Column],
     ) -> Result<Self, PlanError> {
         let own = chosen(origin.effects)?;
-        let ways = columns.iter().enumerate().map(|(at, column)| match column {
+        let methods = columns.iter().enumerate().map(|(at, column)| match column {
             // nothing is twisted in the plane
             Column::Coefficient(Coefficient::Kb4 | Coefficient::Cb4)
                 if machine.layout.motion == Motion::Plane =>
@@ -112,7 +112,7 @@ impl DerivativePlan {
             }
         });
         Ok(Self {
-            methods: ways.collect::<Result<_, _>>()?,
+            methods: methods.collect::<Result<_, _>>()?,
         })
     }
 

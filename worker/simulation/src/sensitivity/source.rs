@@ -7,9 +7,10 @@
 use super::differences::Difference;
 use super::perturbed::PerturbedModel;
 use crate::effect::Place;
-use crate::element::bushing::PLANE_COEFFICIENTS;
 use crate::element::impact::DerivativeVariable;
+use crate::linear::Lanes;
 use crate::math::vector::add_scaled;
+use crate::model::chain::unit_loads::UnitLoads;
 use crate::model::description::{Arc, Head};
 use crate::model::extension::Extensions;
 use crate::model::forces::Terms;
@@ -58,8 +59,9 @@ pub(super) struct ChangedTerms {
     pub(super) terms: Option<(Terms, bool)>,
     /// Whether the front heads of the two machines differ in the radius of their arc and in nothing else.
     pub(super) front_radius: bool,
-    /// Whether the machines differ in the gauge stress at a given state, or in the time of a sample.
-    pub(super) stress: bool,
+    /// Whether the machines differ in the gauge stress at a given state, in the time of a sample, or in the measuring
+    /// chain.
+    pub(super) reading: bool,
 }
 
 impl ChangedTerms {
@@ -103,8 +105,24 @@ impl ChangedTerms {
         Self {
             terms: (!still).then_some((terms, inertia)),
             front_radius: !front && d.front_arc != o.front_arc,
-            stress: back || both || driven,
+            reading: back || both || driven || place == Place::Gauge,
         }
+    }
+}
+
+impl Joints<'_> {
+    /// Adds `dR/dp` to one of the lanes of `right`, for motion in the plane; returns false, and adds nothing, in
+    /// space, where `units` is empty.
+    pub(super) fn add_unit_forces(
+        &self,
+        individual: &mut RopeMachine<'_>,
+        (state, units): (&State, &[UnitLoads]),
+        (right, lane): (&mut [Lanes], usize),
+    ) -> bool {
+        let unit = (self.unit.ropes(), self.inner);
+        let units = (units, self.factor);
+        individual.add_unit_forces(state.motion(), unit, units, right, |x| &mut x.0[lane]);
+        !units.0.is_empty()
     }
 }
 
@@ -116,13 +134,19 @@ pub(super) const ROPES: Terms = Terms {
     ..Terms::NONE
 };
 
+/// Selection of the axial laws that effects add to the rope joints.
+pub(super) const PULLS: Terms = Terms {
+    pulls: true,
+    ..Terms::NONE
+};
+
 impl Source<'_> {
     /// Computes `dR/dp` into `sum`, at a state whose cylinder poses and contact points `individual` holds;
-    /// `units` are the result of [`RopeMachine::joint_units`], empty in space.
+    /// `units` are the result of [`RopeMachine::unit_loads`], empty in space.
     pub(super) fn right_hand_side(
         &mut self,
         individual: &mut RopeMachine<'_>,
-        (state, units): (&State, &[[f64; PLANE_COEFFICIENTS]]),
+        (state, units): (&State, &[UnitLoads]),
         (own, sides, difference): (
             &mut PerturbedModel<'_>,
             &mut [PerturbedModel<'_>],
@@ -138,23 +162,13 @@ impl Source<'_> {
         };
         match self {
             Self::Joints(joints) => {
-                let Joints {
-                    unit,
-                    factor,
-                    inner,
-                } = &mut **joints;
                 let terms = Terms {
                     contact: [false; 2],
-                    joints: units.is_empty(),
                     ..ROPES
                 };
+                let unit = &mut joints.unit;
                 unit.residual(&mut individual.scratch, state, (terms, false), sum);
-                if let Some((which, times)) = *inner {
-                    for (sum, units) in sum.iter_mut().zip(units) {
-                        *sum += times * units[which];
-                    }
-                }
-                scale(sum, *factor);
+                scale(sum, joints.factor);
             }
             Self::Contact { by, factor } => {
                 individual.contact_by(at, (*by, [true; 2]), sum);

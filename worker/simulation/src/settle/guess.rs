@@ -6,7 +6,7 @@ use crate::math::elementary::sin_cos;
 use crate::model::chain::Chain;
 use crate::model::kinematics::{DoesNotClose, Position};
 use crate::model::layout::Motion;
-use crate::model::strand::{BACK, FRONT};
+use crate::model::parallel_ropes::{BACK, FRONT};
 use crate::model::{Machine, Ropes};
 
 /// Estimates coordinates near equilibrium: taut, stretched ropes on the arcs, with the penetration that their

@@ -192,11 +192,11 @@ fn order_holds_for_forced_equations_with_a_known_solution() {
     }
 }
 
-/// Checks the order of the backward differentiation formulas of order 1 to 5, started from a known history.
+/// Checks the order of the backward differentiation formulas of order 1 and 2, started from a known history.
 #[test]
 fn each_backward_differentiation_formula_has_its_order() {
-    for order in 1..=5 {
-        let coarsest = [400, 200, 100, 50, 40][order - 1];
+    for order in 1..=2 {
+        let coarsest = [400, 200][order - 1];
         let errors = [1, 2, 4].map(|k| {
             let h = 1.0 / (k * coarsest) as f64;
             let past: Vec<State> = (0..=order)
@@ -316,13 +316,9 @@ fn chosen(highest: usize) -> (usize, usize) {
 /// maximum order.
 #[test]
 fn backward_differentiation_chooses_the_order_that_pays() {
-    let [first, second, fifth] = [1, 2, 5].map(chosen);
+    let [first, second] = [1, 2].map(chosen);
     assert_eq!([first.1, second.1], [1, 2]);
-    assert!((3..=5).contains(&fifth.1), "order {}", fifth.1);
-    assert!(
-        2 * second.0 < first.0 && 2 * fifth.0 < second.0,
-        "{first:?} {second:?} {fifth:?}"
-    );
+    assert!(2 * second.0 < first.0, "{first:?} {second:?}");
 }
 
 /// Checks that the error of the dense output between two exact states falls with the fourth power of the

@@ -398,7 +398,16 @@ fn present(id: &str) -> (Subject, Vec<Column>) {
     (subject, own)
 }
 
-/// Checks 39 derivatives against differences, a quick selection of the 562 that
+/// Coefficients that are differentiated beside the parameters of an effect: the one that laws along the ropes ask
+/// for, and one of each other kind, which change what these laws remember.
+const BESIDE: [Coefficient; 4] = [
+    Coefficient::Kb1,
+    Coefficient::Kb23,
+    Coefficient::Cb1,
+    Coefficient::Kc,
+];
+
+/// Checks 56 derivatives against differences, a quick selection of the 562 that
 /// `every_column_agrees_with_differences_on_the_same_steps` covers.
 #[test]
 fn columns_agree_with_differences_on_the_same_steps() {
@@ -406,9 +415,14 @@ fn columns_agree_with_differences_on_the_same_steps() {
     let coefficients = Coefficient::ALL.map(Column::Coefficient);
     assert!(compare(&individual(1), &coefficients, &mut judged));
     assert!(compare(&fast(), &sizes(9), &mut judged));
-    for id in ["rope_hysteresis", "amplifier_lag", "pivot_friction"] {
+    for id in [
+        "rope_hysteresis",
+        "amplifier_lag",
+        "pivot_friction",
+        "gauge_gain",
+    ] {
         let (subject, mut columns) = present(id);
-        columns.push(Column::Coefficient(Coefficient::Kb1));
+        columns.extend(BESIDE.map(Column::Coefficient));
         assert!(compare(&subject, &columns, &mut judged), "{id}");
     }
     judged.verdict();
@@ -427,7 +441,7 @@ fn every_column_agrees_with_differences_on_the_same_steps() {
     assert!(compare(&fast(), &sizes(1), &mut judged));
     for descriptor in catalogue().iter().filter(|d| !d.generic) {
         let (subject, mut columns) = present(&descriptor.id);
-        columns.push(Column::Coefficient(Coefficient::Kb1));
+        columns.extend(BESIDE.map(Column::Coefficient));
         assert!(
             compare(&subject, &columns, &mut judged),
             "{}",

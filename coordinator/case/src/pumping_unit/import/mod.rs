@@ -26,9 +26,9 @@ use super::{
 use crate::{
     document::{Document, DocumentStep},
     error::{CaseError, contradiction, damaged},
-    file, kind,
+    file,
     note::Note,
-    source::{self, Overrides},
+    source::{self, Overrides, stated_kind},
 };
 use ::record::Record;
 use protocol::{
@@ -92,7 +92,7 @@ impl ImportTarget {
     /// Returns an error for a malformed case file, a case of another kind, and an unknown condition.
     pub fn new(folder: &Path, condition: Option<&str>) -> Result<Self, CaseError> {
         let document = source::document(folder, &Overrides::default())?;
-        let stated = kind::stated(&document)?;
+        let stated = stated_kind(&document)?;
         if stated != Machine::KIND {
             return Err(document.field(
                 &[DocumentStep::Key("model"), DocumentStep::Key("kind")],

@@ -233,7 +233,7 @@ fn curves<'a>(
     document: &Document,
     mapping: &'a RecordMapping,
 ) -> Result<Vec<Curve<'a>>, CaseError> {
-    let way = |name: &'a str, key: &'static str| {
+    let keys = |name: &'a str, key: &'static str| {
         [
             DocumentStep::Key("curves"),
             DocumentStep::Key(name),
@@ -244,7 +244,7 @@ fn curves<'a>(
     for (name, entry) in &mapping.curves {
         if !CURVES.iter().any(|(known, _)| known == name) {
             return Err(document.field(
-                &way(name, "column")[..2],
+                &keys(name, "column")[..2],
                 "{ .. }",
                 format!("a curve of a record: {names}"),
                 "correct the name, or remove the curve",
@@ -264,7 +264,7 @@ fn curves<'a>(
             |(other, own): &(&String, &CurveEntry)| *other < name && own.column == entry.column;
         if let Some((other, _)) = mapping.curves.iter().find(same) {
             return Err(document.field(
-                &way(name, "column"),
+                &keys(name, "column"),
                 format!("\"{}\"", entry.column),
                 format!("another column than that of {other}"),
                 "state the column of each curve; the second one of a name is `NAME#2`",
@@ -272,7 +272,7 @@ fn curves<'a>(
         }
         if !entry.factor.is_finite() || entry.factor.abs() < f64::MIN_POSITIVE {
             return Err(document.field(
-                &way(name, "factor"),
+                &keys(name, "factor"),
                 entry.factor,
                 "a finite number other than 0",
                 "state the factor on the numbers of the column, such as kN per volt",
@@ -286,7 +286,7 @@ fn curves<'a>(
     let curve = |(name, sensor, entry): (&'static str, Sensor, &'a CurveEntry)| {
         let factor = factor(sensor, entry).map_err(|(key, allowed, help)| {
             document.field(
-                &way(name, key),
+                &keys(name, key),
                 format!("\"{}\"", entry.unit),
                 allowed,
                 help,

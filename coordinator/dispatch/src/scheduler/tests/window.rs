@@ -119,17 +119,3 @@ fn a_window_uses_what_a_barrier_leaves_idle() {
     assert!(barrier < 0.45, "{barrier}");
     assert!(window > 0.9, "{window}");
 }
-
-/// Prints the table in `tests/README.md`: share of the cluster's capacity that searches use.
-#[test]
-#[ignore = "a study, not a test"]
-fn share_of_capacity_used() {
-    for workers in [8, 16, 40, 80] {
-        println!(
-            "| {workers} | {:.2} | {:.2} | {:.2} |",
-            generational(workers, 4000),
-            windowed(workers, 2, 16_000),
-            windowed(workers, 3, 16_000),
-        );
-    }
-}

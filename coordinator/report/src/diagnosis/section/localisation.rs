@@ -1,9 +1,11 @@
 //! Report section that localises the residual of the recalibrated model: by abscissa, by order and by joint.
-use crate::diagnosis::subject::{DiagnosisInput, channels};
-use crate::document::{Block, Figure, Section, figures};
-use crate::number::{fixed, integer_or_significant, significant, unit};
-use crate::words::{abscissa_quantity, join_words};
-use crate::{chart, kind};
+use crate::{
+    chart::{self, ChartAxis},
+    diagnosis::subject::{DiagnosisInput, channels},
+    document::{Block, Figure, Section, figures},
+    number::{fixed, integer_or_significant, significant, unit},
+    words::{abscissa_quantity, join_words},
+};
 use discrepancy::localisation::summary::Localisation;
 use discrepancy::localisation::window_test::AbscissaWindow;
 use protocol::case::Abscissa;
@@ -39,8 +41,8 @@ fn maps(subject: &DiagnosisInput<'_>, seen: &Localisation, record: &Record) -> V
         return Vec::new();
     };
     let abscissa = &first.channel.abscissa;
-    let axis = kind::axis(subject.case, abscissa);
-    let hertz = kind::of(subject.case).frequency_hz(subject.case, record.condition);
+    let axis = ChartAxis::of(subject.case, abscissa);
+    let hertz = case::kind::of(subject.case).frequency_hz(subject.case, record.condition);
     let all = [
         chart::angle_map(&seen.along, &names, (abscissa, &axis)),
         chart::order_map(&seen.order, &names, (&abscissa.name, hertz)),

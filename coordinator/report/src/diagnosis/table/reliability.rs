@@ -83,6 +83,8 @@ pub(in crate::diagnosis) fn stages(subject: &DiagnosisInput<'_>) -> Option<Table
                 stage.name(),
                 [
                     count(account.experiments),
+                    count(account.with_derivatives),
+                    count(account.known),
                     count(account.failed),
                     count(account.batches),
                     duration(subject.busy(*stage).as_secs_f64()),
@@ -96,6 +98,8 @@ pub(in crate::diagnosis) fn stages(subject: &DiagnosisInput<'_>) -> Option<Table
         "all",
         [
             count(total(|account| account.experiments)),
+            count(total(|account| account.with_derivatives)),
+            count(total(|account| account.known)),
             count(total(|account| account.failed)),
             count(total(|account| account.batches)),
             duration(busy.as_secs_f64()),
@@ -106,9 +110,18 @@ pub(in crate::diagnosis) fn stages(subject: &DiagnosisInput<'_>) -> Option<Table
     }
     Some(Table::new(
             "What each stage cost",
-            ["", "simulations", "did not complete", "batches", "slot time"],
+            [
+                "",
+                "simulations",
+                "with derivatives",
+                "known already",
+                "did not complete",
+                "batches",
+                "slot time",
+            ],
             rows,
         ).with_notes([
+            "Known already: experiments that an equal one had answered; they are not simulated again.",
             "Simulations of one batch are independent of each other; a batch waits for the one before.",
             "Slot time is the time in slots of workers, summed over all simulations of a stage.",]))
 }

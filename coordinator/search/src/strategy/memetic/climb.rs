@@ -44,8 +44,8 @@ pub(super) struct Climb {
 }
 
 impl Climb {
-    pub(super) fn new(craft: &Operators, generation: u32, population: &[Individual]) -> Self {
-        let settings = &craft.settings;
+    pub(super) fn new(operators: &Operators, generation: u32, population: &[Individual]) -> Self {
+        let settings = &operators.settings;
         let trials = match settings.climbers {
             Climbers::Elite => {
                 let first = plan(Purpose::CrossoverTrial, settings.crossover_trials);
@@ -59,12 +59,12 @@ impl Climb {
                     .chain(plan(Purpose::MutationTrial, population.len()))
                     .collect()
             }
-            Climbers::Literal => literal_trials(craft, generation, population.len()),
+            Climbers::Literal => literal_trials(operators, generation, population.len()),
         };
         Self {
             generation,
             trials,
-            diversity: diversity(&craft.codec, population),
+            diversity: diversity(&operators.codec, population),
             attempts: Vec::new(),
         }
     }
@@ -74,17 +74,17 @@ impl Climb {
     }
 
     /// Plans the next hill-climbing trials, to be evaluated at once; empty when the climb is over.
-    pub(super) fn plan(&mut self, craft: &Operators, population: &[Individual]) -> &[Attempt] {
-        let width = self.width(craft);
+    pub(super) fn plan(&mut self, operators: &Operators, population: &[Individual]) -> &[Attempt] {
+        let width = self.width(operators);
         let elite = best(population);
-        let wheel = craft.wheel(population);
+        let wheel = operators.wheel(population);
         self.attempts.clear();
         for &trial in self.trials.iter().take(width) {
-            let target = match craft.settings.climbers {
+            let target = match operators.settings.climbers {
                 Climbers::All => trial.index,
                 Climbers::Elite | Climbers::Literal => elite,
             };
-            let chromosome = self.draw(craft, population, &wheel, (trial, target));
+            let chromosome = self.draw(operators, population, &wheel, (trial, target));
             self.attempts.push(Attempt {
                 purpose: trial.purpose,
                 chromosome,
@@ -98,7 +98,7 @@ impl Climb {
     /// better trials.
     pub(super) fn absorb(
         &mut self,
-        craft: &Operators,
+        operators: &Operators,
         population: &mut [Individual],
         told: &[EvaluationResult],
     ) {
@@ -109,7 +109,8 @@ impl Climb {
             .enumerate()
             .filter(|(_, (attempt, told))| told.beats(population[attempt.target].told))
             .map(|(position, _)| position);
-        let (winners, decided) = match (craft.settings.climbers, craft.settings.acceptance) {
+        let (winners, decided) = match (operators.settings.climbers, operators.settings.acceptance)
+        {
             (Climbers::All, _) => (successes.collect(), attempts.len()),
             (_, Acceptance::BestOfBatch) => {
                 // `min_by` keeps the first of equals
@@ -133,9 +134,9 @@ impl Climb {
     }
 
     /// Returns how many hill-climbing trials may be evaluated at the same time.
-    fn width(&self, craft: &Operators) -> usize {
+    fn width(&self, operators: &Operators) -> usize {
         let all = self.trials.len();
-        match (craft.settings.climbers, craft.settings.acceptance) {
+        match (operators.settings.climbers, operators.settings.acceptance) {
             (Climbers::All, _) => {
                 // the mutation of an individual starts from what its crossover left
                 let kind = self.trials.first().map(|trial| trial.purpose);
@@ -145,13 +146,13 @@ impl Climb {
                     .count()
             }
             (_, Acceptance::BestOfBatch) => all,
-            (_, Acceptance::First) => craft.settings.speculation.unwrap_or(all).min(all),
+            (_, Acceptance::First) => operators.settings.speculation.unwrap_or(all).min(all),
         }
     }
 
     fn draw(
         &self,
-        craft: &Operators,
+        operators: &Operators,
         population: &[Individual],
         wheel: &RouletteWheel,
         (trial, target): (Trial, usize),
@@ -161,9 +162,9 @@ impl Climb {
             index: trial.index,
         };
         let start = &population[target].chromosome;
-        let literal = craft.settings.climbers == Climbers::Literal;
+        let literal = operators.settings.climbers == Climbers::Literal;
         if trial.purpose == Purpose::CrossoverTrial {
-            return craft.crossover_trial(at, start, self.diversity, |stream| {
+            return operators.crossover_trial(at, start, self.diversity, |stream| {
                 let partner = if literal {
                     trial.index
                 } else {
@@ -174,10 +175,10 @@ impl Climb {
         }
         if literal {
             let mut child = start.clone();
-            craft.mutate(at, Phase::MutationTrial, &mut child);
+            operators.mutate(at, Phase::MutationTrial, &mut child);
             return child;
         }
-        craft.mutation_trial(at, start, self.diversity)
+        operators.mutation_trial(at, start, self.diversity)
     }
 }
 
@@ -187,11 +188,11 @@ fn plan(purpose: Purpose, count: usize) -> impl Iterator<Item = Trial> {
 
 /// Plans the hill-climbing trials of the paper's literal text: each individual in turn starts a crossover
 /// trial, with the crossover probability, and a mutation trial.
-fn literal_trials(craft: &Operators, generation: u32, population: usize) -> Vec<Trial> {
+fn literal_trials(operators: &Operators, generation: u32, population: usize) -> Vec<Trial> {
     let mut trials = Vec::with_capacity(2 * population);
     for index in 0..population {
-        let mut stream = craft.stream(DrawAddress { generation, index }, Phase::Crossover);
-        if stream.chance(craft.settings.crossover_probability) {
+        let mut stream = operators.stream(DrawAddress { generation, index }, Phase::Crossover);
+        if stream.chance(operators.settings.crossover_probability) {
             trials.push(Trial {
                 purpose: Purpose::CrossoverTrial,
                 index,

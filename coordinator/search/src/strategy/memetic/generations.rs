@@ -15,13 +15,13 @@ use crate::{
     strategy::{
         archive::{Archive, EvaluatedIndividual},
         ask_tell::Strategy,
-        definition::{Expectations, Preset, SettingGroup},
+        definition::{Preset, SettingGroup},
         evaluation_result::EvaluationResult,
         proposal::Purpose,
-        sequencer::Conductor,
+        sequencer::Sequencer,
         setting::SettingsError,
         settings::{Settings, StrategySettings, build_as},
-        stage::{Batch, Piece, ProposalDraft},
+        stage::{Batch, ProposalDraft, SearchStage},
     },
 };
 
@@ -33,7 +33,6 @@ pub const PAPER: Preset = Preset {
     settings: |_| Settings::of(&MemeticSettings::paper()),
     groups: &[SettingGroup::whole(SETTINGS)],
     slots: 8,
-    expectations: PROMISE,
     build: build_as::<MemeticSettings>,
 };
 
@@ -47,17 +46,6 @@ pub const PAPER_BATCH: Preset = Preset {
     ..PAPER
 };
 
-/// Accuracy that tests demand of presets with the paper's settings, both with generations and with a sliding
-/// window.
-pub(super) const PROMISE: Expectations = Expectations {
-    one_basin: 0.1,
-    many_basins: 1.1,
-    distance: 0.3,
-    starts_at_recommended: false,
-    valley_evaluations: None,
-    seed_dependent: true,
-};
-
 impl StrategySettings for MemeticSettings {
     const STRATEGY: &'static str = "memetic";
 
@@ -66,13 +54,13 @@ impl StrategySettings for MemeticSettings {
         let intervals = space.axes().iter().map(Axis::interval).collect();
         let streams = Streams::new(seed, 0);
         let memetic = Memetic::new(self.clone(), (space, intervals), &[], streams)?;
-        let pieces: Vec<Box<dyn Piece>> = vec![Box::new(memetic)];
-        Ok(Box::new(Conductor::new(pieces, self.reuse_clones)))
+        let stages: Vec<Box<dyn SearchStage>> = vec![Box::new(memetic)];
+        Ok(Box::new(Sequencer::new(stages, self.reuse_clones)))
     }
 }
 
 /// State of the memetic algorithm, which tells what the running batch contains.
-enum Stage {
+enum Step {
     /// No batch has been planned yet.
     Start,
     /// Evaluation of the initial population or of the children of a generation.
@@ -81,14 +69,14 @@ enum Stage {
     Climbing(Climb),
 }
 
-/// Memetic algorithm as one batch-wise part (piece) of a strategy.
+/// Memetic algorithm as one batch-wise part (stage) of a strategy.
 pub struct Memetic {
-    craft: Operators,
+    operators: Operators,
     /// Chromosomes with which the initial population begins; its other members are random.
     start: Vec<Chromosome>,
     population: Vec<Individual>,
     generation: u32,
-    stage: Stage,
+    step: Step,
 }
 
 impl Memetic {
@@ -103,21 +91,21 @@ impl Memetic {
         start: &[Vec<f64>],
         streams: Streams,
     ) -> Result<Self, SettingsError> {
-        let craft = Operators::new(settings, space, intervals, streams)?;
-        let start = start.iter().map(|point| craft.codec.encode(point));
+        let operators = Operators::new(settings, space, intervals, streams)?;
+        let start = start.iter().map(|point| operators.codec.encode(point));
         Ok(Self {
             start: start.collect(),
-            craft,
+            operators,
             population: Vec::new(),
             generation: 0,
-            stage: Stage::Start,
+            step: Step::Start,
         })
     }
 
     fn initial(&self) -> Vec<Chromosome> {
-        let size = self.craft.settings.population;
+        let size = self.operators.settings.population;
         let mut population: Vec<_> = self.start.iter().take(size).cloned().collect();
-        population.extend((population.len()..size).map(|index| self.craft.first(index)));
+        population.extend((population.len()..size).map(|index| self.operators.first(index)));
         population
     }
 
@@ -127,20 +115,21 @@ impl Memetic {
         let mut children: Vec<_> = selected.into_iter().map(|one| one.chromosome).collect();
         for (pair, both) in children.chunks_exact_mut(2).enumerate() {
             if let [a, b] = both {
-                self.craft.cross(self.at(pair), a, b);
+                self.operators.cross(self.at(pair), a, b);
             }
         }
         for (index, child) in children.iter_mut().enumerate() {
-            self.craft.mutate(self.at(index), Phase::Mutation, child);
+            self.operators
+                .mutate(self.at(index), Phase::Mutation, child);
         }
         children
     }
 
     /// Draws a new population from the current one by roulette.
     fn select(&self) -> Vec<Individual> {
-        let wheel = self.craft.wheel(&self.population);
-        let drawn = (0..self.craft.settings.population).map(|index| {
-            let mut stream = self.craft.stream(self.at(index), Phase::Selection);
+        let wheel = self.operators.wheel(&self.population);
+        let drawn = (0..self.operators.settings.population).map(|index| {
+            let mut stream = self.operators.stream(self.at(index), Phase::Selection);
             self.population[wheel.draw(&mut stream)].clone()
         });
         drawn.collect()
@@ -159,7 +148,7 @@ impl Memetic {
             self.population = children;
             return;
         }
-        match self.craft.settings.survival {
+        match self.operators.settings.survival {
             Survival::Generational => {
                 let elite = self.population[best(&self.population)].clone();
                 if elite.told.beats(children[best(&children)].told) {
@@ -171,7 +160,7 @@ impl Memetic {
                 let mut all = std::mem::take(&mut self.population);
                 all.append(&mut children);
                 all.sort_by(|a, b| a.told.order(b.told));
-                all.truncate(self.craft.settings.population);
+                all.truncate(self.operators.settings.population);
                 children = all;
             }
         }
@@ -180,15 +169,18 @@ impl Memetic {
 
     /// Starts the next generation and returns its first batch; `None` after the last generation.
     fn next_generation(&mut self) -> Option<Vec<ProposalDraft>> {
-        if self.generation >= self.craft.settings.bred_generations() {
+        if self.generation >= self.operators.settings.bred_generations() {
             return None;
         }
         self.generation += 1;
-        if self.craft.settings.climbers == Climbers::Literal {
+        if self.operators.settings.climbers == Climbers::Literal {
             let selected = self.select();
             self.survive(selected);
-            self.stage =
-                Stage::Climbing(Climb::new(&self.craft, self.generation, &self.population));
+            self.step = Step::Climbing(Climb::new(
+                &self.operators,
+                self.generation,
+                &self.population,
+            ));
             return Some(Vec::new());
         }
         Some(self.evaluate(self.breed(), Purpose::Offspring))
@@ -196,25 +188,25 @@ impl Memetic {
 
     fn evaluate(&mut self, chromosomes: Vec<Chromosome>, purpose: Purpose) -> Vec<ProposalDraft> {
         let decode = |chromosome| ProposalDraft {
-            genes: self.craft.codec.decode(chromosome),
+            genes: self.operators.codec.decode(chromosome),
             purpose,
         };
         let drafts = chromosomes.iter().map(decode).collect();
-        self.stage = Stage::Evaluating(chromosomes);
+        self.step = Step::Evaluating(chromosomes);
         drafts
     }
 }
 
-impl Piece for Memetic {
+impl SearchStage for Memetic {
     fn plan(&mut self, _archive: &Archive) -> Option<Batch> {
         loop {
-            let drafts = match &mut self.stage {
-                Stage::Start => Some(self.evaluate(self.initial(), Purpose::Initial)),
-                Stage::Evaluating(_) => self.next_generation(),
-                Stage::Climbing(climb) => {
-                    let attempts = climb.plan(&self.craft, &self.population);
+            let drafts = match &mut self.step {
+                Step::Start => Some(self.evaluate(self.initial(), Purpose::Initial)),
+                Step::Evaluating(_) => self.next_generation(),
+                Step::Climbing(climb) => {
+                    let attempts = climb.plan(&self.operators, &self.population);
                     let draft = |attempt: &Attempt| ProposalDraft {
-                        genes: self.craft.codec.decode(&attempt.chromosome),
+                        genes: self.operators.codec.decode(&attempt.chromosome),
                         purpose: attempt.purpose,
                     };
                     let drafts: Vec<ProposalDraft> = attempts.iter().map(draft).collect();
@@ -236,31 +228,31 @@ impl Piece for Memetic {
 
     fn absorb(&mut self, results: &[EvaluatedIndividual]) {
         let told: Vec<EvaluationResult> = results.iter().map(|result| result.result).collect();
-        match &mut self.stage {
-            Stage::Start => {}
-            Stage::Evaluating(chromosomes) => {
+        match &mut self.step {
+            Step::Start => {}
+            Step::Evaluating(chromosomes) => {
                 let newcomers = std::mem::take(chromosomes).into_iter().zip(told);
                 let children = newcomers
                     .map(|(chromosome, told)| Individual { chromosome, told })
                     .collect();
                 self.survive(children);
                 if self.generation > 0 {
-                    let climb = Climb::new(&self.craft, self.generation, &self.population);
-                    self.stage = Stage::Climbing(climb);
+                    let climb = Climb::new(&self.operators, self.generation, &self.population);
+                    self.step = Step::Climbing(climb);
                 }
             }
-            Stage::Climbing(climb) => climb.absorb(&self.craft, &mut self.population, &told),
+            Step::Climbing(climb) => climb.absorb(&self.operators, &mut self.population, &told),
         }
     }
 
     fn generations(&self) -> u32 {
-        self.craft.settings.bred_generations()
+        self.operators.settings.bred_generations()
     }
 
     /// Returns the expected number of remaining evaluations, not counting speculative trials that will be
     /// discarded.
     fn remaining(&self) -> u64 {
-        let settings = &self.craft.settings;
+        let settings = &self.operators.settings;
         let size = settings.population as u64;
         let trials = match settings.climbers {
             Climbers::Elite => (settings.crossover_trials + settings.mutation_trials) as u64,
@@ -272,17 +264,17 @@ impl Piece for Memetic {
             size
         };
         let ahead = u64::from(self.generations().saturating_sub(self.generation));
-        let running = match &self.stage {
-            Stage::Start => size,
-            Stage::Evaluating(waiting) if self.generation == 0 => waiting.len() as u64,
-            Stage::Evaluating(waiting) => waiting.len() as u64 + trials,
-            Stage::Climbing(climb) => climb.remaining() as u64,
+        let running = match &self.step {
+            Step::Start => size,
+            Step::Evaluating(waiting) if self.generation == 0 => waiting.len() as u64,
+            Step::Evaluating(waiting) => waiting.len() as u64 + trials,
+            Step::Climbing(climb) => climb.remaining() as u64,
         };
         running + ahead * (children + trials)
     }
 
     fn reached_threshold(&self) -> bool {
-        let Some(threshold) = self.craft.settings.threshold else {
+        let Some(threshold) = self.operators.settings.threshold else {
             return false;
         };
         let reached = |one: &Individual| one.told.survived() && one.told.fitness <= threshold;

@@ -1,5 +1,5 @@
 //! Settings of the memetic algorithm: the paper's numbers, and every point that the paper leaves open.
-use crate::strategy::setting::{AllowedValues, Setting, SettingsError, check};
+use crate::strategy::setting::{AllowedValues, Setting, SettingsError, check, settings};
 use serde::{Deserialize, Serialize};
 
 /// Encoding of genes in a chromosome.
@@ -108,59 +108,73 @@ pub enum Survival {
     Plus,
 }
 
-/// Settings of the memetic algorithm, also for the points that the paper leaves open.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct MemeticSettings {
-    /// Individuals per generation.
-    pub population: usize,
-    /// Maximum number of generations; the initial population counts only with `initial_counts`.
-    pub generations: u32,
-    /// Fitness at or below which the search ends; `None` for no threshold.
-    pub initial_counts: bool,
-    /// Fitness at or below which the search ends, if any.
-    pub threshold: Option<f64>,
-    /// Probability of crossover for a pair of parents.
-    pub crossover_probability: f64,
-    /// Probability of a mutation, per bit, gene or individual as `mutation_unit` says.
-    pub mutation_probability: f64,
-    /// Trials of the crossover-based hill climb per generation; the paper gives no number.
-    pub crossover_trials: usize,
-    /// Trials of the mutation-based hill climb per generation.
-    pub mutation_trials: usize,
-    /// Encoding of genes in a chromosome.
-    pub encoding: Encoding,
-    /// Bits per gene, 2 to 30; 16 bits resolve an interval of 8 decades to 1.2e-4 decade.
-    pub bits_per_gene: u32,
-    /// Standard deviation of a mutation of the real encoding, as a share of the interval.
-    pub real_step: f64,
-    /// Distribution of the codes over a gene's interval.
-    pub scale: CodeScale,
-    /// Weight of an individual on the roulette wheel.
-    pub roulette: Roulette,
-    /// Crossover of two parents.
-    pub crossover: Crossover,
-    /// Unit to which the mutation probability applies.
-    pub mutation_unit: MutationUnit,
-    /// Crossover of the first hill climb.
-    pub special_crossover: SpecialCrossover,
-    /// Number of random bits that the second hill climb flips; `None`, the default: 1 to 4, more in a more
-    /// diverse population.
-    pub flipped_bits: Option<usize>,
-    /// Interpretation of the paper's steps 6 to 8: which individuals climb, and against which individual they
-    /// are compared.
-    pub climbers: Climbers,
-    /// Acceptance rule of a hill climb, which sets whether its trials are sequential.
-    pub acceptance: Acceptance,
-    /// Survivor selection: how the next generation is formed from parents and children.
-    pub survival: Survival,
-    /// Number of trials of a sequential climb that are evaluated ahead, from the current elite; trials after
-    /// the first success are discarded. `None`: all remaining trials. The elite's path is identical, bit for
-    /// bit, for every value; a large value takes fewer batches, a small one fewer evaluations.
-    pub speculation: Option<usize>,
-    /// Whether a repeated individual keeps its result instead of being simulated again, as the paper would;
-    /// the search is identical, bit for bit, either way.
-    pub reuse_clones: bool,
+settings! {
+    /// Settings of the memetic algorithm, also for the points that the paper leaves open.
+    pub struct MemeticSettings, pub(in crate::strategy) table SETTINGS {
+        pub population: usize = "individuals per generation", AllowedValues::Whole(4, 100_000);
+        pub generations: u32 = "maximum number of generations", AllowedValues::Whole(0, 1_000_000);
+        pub initial_counts: bool =
+            "whether the initial population is the first of the generations",
+            AllowedValues::Switch;
+        pub threshold: Option<f64> =
+            "fitness at or below which the search ends",
+            AllowedValues::Real(0.0, f64::MAX), optional("none");
+        pub crossover_probability: f64 = "probability that a pair is crossed", AllowedValues::Real(0.0, 1.0);
+        pub mutation_probability: f64 = "probability of a mutation per mutation_unit", AllowedValues::Real(0.0, 1.0);
+        pub crossover_trials: usize =
+            "trials of the crossover-based hill climb per generation",
+            AllowedValues::Whole(0, 1_000_000);
+        pub mutation_trials: usize =
+            "trials of the mutation-based hill climb per generation",
+            AllowedValues::Whole(0, 1_000_000);
+        pub encoding: Encoding =
+            "encoding of genes in a chromosome",
+            AllowedValues::Words(&["binary", "gray", "real"]);
+        pub bits_per_gene: u32 = "bits per gene of the binary and Gray encodings", AllowedValues::Whole(2, 30);
+        pub real_step: f64 =
+            "deviation of a mutation of the real encoding, as a share of the interval",
+            AllowedValues::Real(1e-6, 1.0);
+        pub scale: CodeScale =
+            "distribution of the codes over a gene's interval",
+            AllowedValues::Words(&["logarithmic", "linear"]);
+        pub roulette: Roulette =
+            "weight on the roulette wheel: 1/f, 1/(1+f), largest f - f, by rank",
+            AllowedValues::Words(&["inverse", "inverse_plus_one", "difference", "rank"]);
+        pub crossover: Crossover = "crossover of two parents", AllowedValues::Words(&["uniform", "one_point"]);
+        pub mutation_unit: MutationUnit =
+            "unit to which mutation_probability applies",
+            AllowedValues::Words(&["bit", "gene", "individual"]);
+        pub special_crossover: SpecialCrossover =
+            "share of the partner in the first hill climb: 0.1 to 0.6 by diversity, or half",
+            AllowedValues::Words(&["elite_biased", "even"]);
+        /// Number of random bits that the second hill climb flips; `None`, the default: 1 to 4, more in a more
+        /// diverse population.
+        pub flipped_bits: Option<usize> =
+            "random bits that the second hill climb flips: 1 to 4 by diversity, or a fixed number",
+            AllowedValues::Whole(1, 1000), optional("adaptive");
+        /// Interpretation of the paper's steps 6 to 8: which individuals climb, and against which individual they
+        /// are compared.
+        pub climbers: Climbers =
+            "individuals that climb: the elite, all, or the paper's literal steps",
+            AllowedValues::Words(&["elite", "all", "literal"]);
+        pub acceptance: Acceptance =
+            "start of a trial: the last winner, or one elite for the whole batch",
+            AllowedValues::Words(&["first", "best_of_batch"]);
+        pub survival: Survival =
+            "survivors: children and one elite, or the best of parents and children",
+            AllowedValues::Words(&["generational", "plus"]);
+        /// Number of trials of a sequential climb that are evaluated ahead, from the current elite; trials after
+        /// the first success are discarded. `None`: all remaining trials. The elite's path is identical, bit for
+        /// bit, for every value; a large value takes fewer batches, a small one fewer evaluations.
+        pub speculation: Option<usize> =
+            "trials evaluated ahead; same result, fewer batches and more evaluations the more there are",
+            AllowedValues::Whole(1, 1_000_000), optional("all");
+        /// Whether a repeated individual keeps its result instead of being simulated again, as the paper would;
+        /// the search is identical, bit for bit, either way.
+        pub reuse_clones: bool =
+            "whether a repeated individual reuses its result; the search is the same either way",
+            AllowedValues::Switch;
+    }
 }
 
 impl MemeticSettings {
@@ -215,121 +229,3 @@ impl MemeticSettings {
         check(self, SETTINGS)
     }
 }
-
-/// Table of the memetic settings that can be set by name on the command line: the paper's numbers, and every
-/// point that the paper leaves open.
-pub(in crate::strategy) const SETTINGS: &[Setting] = &[
-    Setting::new(
-        "population",
-        AllowedValues::Whole(4, 100_000),
-        "individuals per generation",
-    ),
-    Setting::new(
-        "generations",
-        AllowedValues::Whole(0, 1_000_000),
-        "maximum number of generations",
-    ),
-    Setting::new(
-        "initial_counts",
-        AllowedValues::Switch,
-        "whether the initial population is the first of the generations",
-    ),
-    Setting::new(
-        "threshold",
-        AllowedValues::Real(0.0, f64::MAX),
-        "fitness at or below which the search ends",
-    )
-    .optional("none"),
-    Setting::new(
-        "crossover_probability",
-        AllowedValues::Real(0.0, 1.0),
-        "probability that a pair is crossed",
-    ),
-    Setting::new(
-        "mutation_probability",
-        AllowedValues::Real(0.0, 1.0),
-        "probability of a mutation per mutation_unit",
-    ),
-    Setting::new(
-        "crossover_trials",
-        AllowedValues::Whole(0, 1_000_000),
-        "trials of the crossover-based hill climb per generation",
-    ),
-    Setting::new(
-        "mutation_trials",
-        AllowedValues::Whole(0, 1_000_000),
-        "trials of the mutation-based hill climb per generation",
-    ),
-    Setting::new(
-        "encoding",
-        AllowedValues::Words(&["binary", "gray", "real"]),
-        "encoding of genes in a chromosome",
-    ),
-    Setting::new(
-        "bits_per_gene",
-        AllowedValues::Whole(2, 30),
-        "bits per gene of the binary and Gray encodings",
-    ),
-    Setting::new(
-        "real_step",
-        AllowedValues::Real(1e-6, 1.0),
-        "deviation of a mutation of the real encoding, as a share of the interval",
-    ),
-    Setting::new(
-        "scale",
-        AllowedValues::Words(&["logarithmic", "linear"]),
-        "distribution of the codes over a gene's interval",
-    ),
-    Setting::new(
-        "roulette",
-        AllowedValues::Words(&["inverse", "inverse_plus_one", "difference", "rank"]),
-        "weight on the roulette wheel: 1/f, 1/(1+f), largest f - f, by rank",
-    ),
-    Setting::new(
-        "crossover",
-        AllowedValues::Words(&["uniform", "one_point"]),
-        "crossover of two parents",
-    ),
-    Setting::new(
-        "mutation_unit",
-        AllowedValues::Words(&["bit", "gene", "individual"]),
-        "unit to which mutation_probability applies",
-    ),
-    Setting::new(
-        "special_crossover",
-        AllowedValues::Words(&["elite_biased", "even"]),
-        "share of the partner in the first hill climb: 0.1 to 0.6 by diversity, or half",
-    ),
-    Setting::new(
-        "flipped_bits",
-        AllowedValues::Whole(1, 1000),
-        "random bits that the second hill climb flips: 1 to 4 by diversity, or a fixed number",
-    )
-    .optional("adaptive"),
-    Setting::new(
-        "climbers",
-        AllowedValues::Words(&["elite", "all", "literal"]),
-        "individuals that climb: the elite, all, or the paper's literal steps",
-    ),
-    Setting::new(
-        "acceptance",
-        AllowedValues::Words(&["first", "best_of_batch"]),
-        "start of a trial: the last winner, or one elite for the whole batch",
-    ),
-    Setting::new(
-        "survival",
-        AllowedValues::Words(&["generational", "plus"]),
-        "survivors: children and one elite, or the best of parents and children",
-    ),
-    Setting::new(
-        "speculation",
-        AllowedValues::Whole(1, 1_000_000),
-        "trials evaluated ahead; same result, fewer batches and more evaluations the more there are",
-    )
-    .optional("all"),
-    Setting::new(
-        "reuse_clones",
-        AllowedValues::Switch,
-        "whether a repeated individual reuses its result; the search is the same either way",
-    ),
-];

@@ -18,8 +18,8 @@
 //! half a population.
 //!
 //! The cost of breeding from older results, in medians of 25 seeds after 4,880 evaluations with the paper's
-//! settings (`cargo test -p search -- --ignored --nocapture cost_of_the_window` reproduces the table;
-//! fitness, smaller is better):
+//! settings (`cargo run --release -p bench -- window` reproduces the table; fitness, smaller is
+//! better):
 //!
 //! | function | generations | L = 1 | L = 16 | L = 48 | L = 120 | L = 240 |
 //! |---|---|---|---|---|---|---|
@@ -32,7 +32,6 @@
 //! smallest windows are two to four times worse than generations.
 use super::{
     chromosome::Chromosome,
-    generations::PROMISE,
     operators::{DrawAddress, Operators},
     population::{Individual, best, diversity, worst},
     settings::{MemeticSettings, SETTINGS},
@@ -47,7 +46,7 @@ use crate::{
         evaluation_result::EvaluationResult,
         outcome::{Best, Finish, Progress},
         proposal::{Proposal, Purpose},
-        setting::{AllowedValues, Setting, SettingsError, check},
+        setting::{AllowedValues, Setting, SettingsError, check, settings},
         settings::{Settings, StrategySettings, build_as},
     },
 };
@@ -76,27 +75,21 @@ pub const WINDOW: Preset = Preset {
         },
     ],
     slots: 32,
-    expectations: PROMISE,
     build: build_as::<WindowSettings>,
 };
 
-const WINDOWED: &[Setting] = &[Setting::new(
-    "window",
-    AllowedValues::Whole(1, 1_000_000),
-    "lag in results of the population that an individual is bred from; 3 per planned worker",
-)
-.following_workers()];
-
-/// Settings of the sliding-window memetic algorithm.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct WindowSettings {
-    /// Window L: individual k is bred from results 0 to k - L. Three times the number of workers keeps nearly
-    /// all of them busy.
-    pub window: usize,
-    /// Operators, population and trials; the number of evaluations is `generations` times population and
-    /// trials, plus the first population. Climbers, acceptance, survival and speculation are ignored.
-    pub memetic: MemeticSettings,
+settings! {
+    /// Settings of the sliding-window memetic algorithm.
+    pub struct WindowSettings, table WINDOWED {
+        /// Window L: individual k is bred from results 0 to k - L. Three times the number of workers keeps nearly
+        /// all of them busy.
+        pub window: usize =
+            "lag in results of the population that an individual is bred from; 3 per planned worker",
+            AllowedValues::Whole(1, 1_000_000), following_workers();
+        /// Operators, population and trials; the number of evaluations is `generations` times population and
+        /// trials, plus the first population. Climbers, acceptance, survival and speculation are ignored.
+        pub memetic: MemeticSettings;
+    }
 }
 
 impl WindowSettings {
@@ -126,7 +119,7 @@ impl StrategySettings for WindowSettings {
 pub struct Window {
     /// Window L: individual k is bred from results 0 to k - L.
     lag: usize,
-    craft: Operators,
+    operators: Operators,
     population: Vec<Individual>,
     /// Chromosomes of the proposed individuals whose results have not been consumed, in id order.
     open: VecDeque<Chromosome>,
@@ -148,7 +141,7 @@ impl Window {
         let streams = Streams::new(seed, 0);
         let mut window = Self {
             lag: settings.window,
-            craft: Operators::new(settings.memetic.clone(), space, intervals, streams)?,
+            operators: Operators::new(settings.memetic.clone(), space, intervals, streams)?,
             population: Vec::new(),
             open: VecDeque::new(),
             outbox: Vec::new(),
@@ -163,22 +156,22 @@ impl Window {
 
     /// Returns the number of random individuals proposed before the first child is bred.
     fn first(&self) -> u64 {
-        let population = self.craft.settings.population;
+        let population = self.operators.settings.population;
         population.max(self.lag + population / 2) as u64
     }
 
     /// Returns the period of the repeating sequence of children and hill-climbing trials: population plus
     /// trials.
     const fn cycle(&self) -> u64 {
-        (self.craft.settings.population + self.trials()) as u64
+        (self.operators.settings.population + self.trials()) as u64
     }
 
     const fn trials(&self) -> usize {
-        self.craft.settings.crossover_trials + self.craft.settings.mutation_trials
+        self.operators.settings.crossover_trials + self.operators.settings.mutation_trials
     }
 
     fn planned(&self) -> u64 {
-        let generations = u64::from(self.craft.settings.bred_generations());
+        let generations = u64::from(self.operators.settings.bred_generations());
         self.first() + generations * self.cycle()
     }
 
@@ -197,12 +190,12 @@ impl Window {
             return Purpose::Initial;
         };
         let place = usize::try_from(bred % self.cycle()).unwrap_or(0);
-        let cycle = self.craft.settings.population + self.trials();
+        let cycle = self.operators.settings.population + self.trials();
         let before = place * self.trials() / cycle;
         if (place + 1) * self.trials() / cycle == before {
             return Purpose::Offspring;
         }
-        let (crossovers, all) = (self.craft.settings.crossover_trials, self.trials());
+        let (crossovers, all) = (self.operators.settings.crossover_trials, self.trials());
         if (before + 1) * crossovers / all > before * crossovers / all {
             Purpose::CrossoverTrial
         } else {
@@ -222,7 +215,7 @@ impl Window {
             let chromosome = self.breed(self.next, purpose);
             self.outbox.push(Proposal {
                 id: self.next,
-                genes: self.craft.codec.decode(&chromosome),
+                genes: self.operators.codec.decode(&chromosome),
                 generation: self.generation(self.next),
                 purpose,
             });
@@ -237,29 +230,29 @@ impl Window {
     fn breed(&self, id: u64, purpose: Purpose) -> Chromosome {
         let index = usize::try_from(id).unwrap_or(usize::MAX);
         if purpose == Purpose::Initial {
-            return self.craft.first(index);
+            return self.operators.first(index);
         }
-        let (craft, population) = (&self.craft, &self.population);
+        let (operators, population) = (&self.operators, &self.population);
         let at = DrawAddress {
             generation: 1,
             index,
         };
-        let wheel = craft.wheel(population);
+        let wheel = operators.wheel(population);
         let elite = &population[best(population)].chromosome;
-        let diversity = || diversity(&craft.codec, population);
+        let diversity = || diversity(&operators.codec, population);
         if purpose == Purpose::CrossoverTrial {
-            return craft.crossover_trial(at, elite, diversity(), |stream| {
+            return operators.crossover_trial(at, elite, diversity(), |stream| {
                 &population[wheel.draw(stream)].chromosome
             });
         }
         if purpose == Purpose::MutationTrial {
-            return craft.mutation_trial(at, elite, diversity());
+            return operators.mutation_trial(at, elite, diversity());
         }
-        let mut stream = craft.stream(at, Phase::Selection);
+        let mut stream = operators.stream(at, Phase::Selection);
         let mut child = population[wheel.draw(&mut stream)].chromosome.clone();
         let mut other = population[wheel.draw(&mut stream)].chromosome.clone();
-        craft.cross(at, &mut child, &mut other);
-        craft.mutate(at, Phase::Mutation, &mut child);
+        operators.cross(at, &mut child, &mut other);
+        operators.mutate(at, Phase::Mutation, &mut child);
         child
     }
 
@@ -267,16 +260,16 @@ impl Window {
     fn consume(&mut self, id: u64, chromosome: Chromosome, told: EvaluationResult) {
         self.archive.push(EvaluatedIndividual {
             id,
-            genes: self.craft.codec.decode(&chromosome),
+            genes: self.operators.codec.decode(&chromosome),
             result: told,
             residual: None,
         });
-        let threshold = self.craft.settings.threshold;
+        let threshold = self.operators.settings.threshold;
         if told.survived() && threshold.is_some_and(|threshold| told.fitness <= threshold) {
             self.finish = Some(Finish::Threshold);
         }
         let known = |one: &Individual| one.chromosome == chromosome;
-        if self.population.len() < self.craft.settings.population {
+        if self.population.len() < self.operators.settings.population {
             self.population.push(Individual { chromosome, told });
         } else if !self.population.iter().any(known) {
             // two of a kind would crowd out the others
@@ -329,7 +322,7 @@ impl Strategy for Window {
         let best = self.archive.best().filter(|best| best.result.survived());
         Progress {
             generation: self.generation(evaluations.saturating_sub(1)),
-            generations: self.craft.settings.bred_generations(),
+            generations: self.operators.settings.bred_generations(),
             evaluations,
             expected_evaluations: planned,
             best_fitness: best.map(|best| best.result.fitness),

@@ -1,8 +1,7 @@
 //! Tests of the sliding-window memetic algorithm with windows of several sizes: plan, independence of the
 //! order in which results arrive, and cost of a window.
 use super::*;
-use crate::strategy::build;
-use crate::test_function::{self, SPHERE, TestFunction};
+use crate::test_function::{SPHERE, TestFunction};
 
 fn settings(window: usize) -> WindowSettings {
     WindowSettings {
@@ -101,7 +100,7 @@ fn at_most_a_window_is_open_after_the_first_population_and_trials_have_their_sha
             open <= 5 || consumed + open <= 12,
             "{open} after {consumed}"
         );
-        let genes = search.craft.codec.decode(&search.open[0]);
+        let genes = search.operators.codec.decode(&search.open[0]);
         search.tell(consumed, SPHERE.tell(&space, &genes));
         open -= 1;
     }
@@ -124,51 +123,5 @@ fn a_threshold_ends_the_search_at_the_same_individual_whatever_has_arrived() {
     for order in 1..4 {
         let other = run(&settings, &SPHERE, Some(order));
         assert_eq!(other.archive.entries().len(), length);
-    }
-}
-
-/// Prints the table of costs in the documentation of the module `window`; takes a minute in a release build.
-#[test]
-#[ignore = "a study, not a test"]
-fn cost_of_the_window() {
-    const SEEDS: u64 = 25;
-    const EVALUATIONS: usize = 4880;
-    let median = |settings: &Settings, function: &TestFunction| {
-        let space = function.space();
-        let mut found: Vec<f64> = (1..=SEEDS)
-            .map(|seed| {
-                let mut search = build(settings, &space, seed).unwrap();
-                let mut told = 0;
-                while told < EVALUATIONS && search.finished().is_none() {
-                    for proposal in search.ask() {
-                        if told < EVALUATIONS {
-                            search.tell(proposal.id, function.tell(&space, &proposal.genes));
-                            told += 1;
-                        }
-                    }
-                }
-                let best = search
-                    .archive()
-                    .entries()
-                    .iter()
-                    .filter(|e| e.result.complete);
-                best.map(|e| e.result.fitness).fold(f64::INFINITY, f64::min)
-            })
-            .collect();
-        found.sort_by(f64::total_cmp);
-        found[found.len() / 2]
-    };
-    for function in test_function::ALL {
-        let paper = Settings::of(&MemeticSettings::paper());
-        let windows = [1, 16, 48, 120, 240].map(|window| {
-            let settings = Settings::of(&WindowSettings {
-                window,
-                memetic: MemeticSettings::paper(),
-            });
-            format!("{:.3e}", median(&settings, function))
-        });
-        let first = format!("{:.3e}", median(&paper, function));
-        let row = [vec![function.name.to_owned(), first], windows.into()].concat();
-        println!("//! | {} |", row.join(" | "));
     }
 }

@@ -2,15 +2,13 @@
 mod messages;
 mod session;
 
-use crate::cli::output::{
-    problem::{EXIT_CODES, Problem},
-    terminal,
-};
+use crate::cli::output::{problem::EXIT_CODES, terminal};
 use clap::{Args, builder::PossibleValuesParser};
 use messages::Line;
 use search::strategy::CATALOGUE;
 use session::{Dialogue, Opening};
 use std::io::{self, BufRead as _};
+use support::Problem;
 
 /// Let another program evaluate what a strategy asks for.
 #[derive(Debug, Args)]

@@ -1,8 +1,8 @@
 //! State of the dialogue with an external evaluator: passes the reported values to the search strategy and
 //! returns the next points to evaluate. Independent of where the lines come from.
 use super::messages::{Answer, Answers, Axis, Best, Line, Point, Scale, read};
-use crate::cli::argument::settings::SettingsChoice;
 use protocol::case::{self, Unknown};
+use run::settings;
 use search::{
     space::Space,
     strategy::{EvaluationResult, Finish, Residual, SearchPlan, Strategy, build_after, preset},
@@ -86,12 +86,12 @@ impl Opening {
             let words = value.as_str().map(str::to_owned);
             (key, words.unwrap_or_else(|| value.to_string()))
         });
-        let set = set.collect();
+        let set: Vec<_> = set.collect();
         let plan = SearchPlan {
             space: &space,
             workers: 1,
         };
-        let chosen = SettingsChoice { set }.choose(preset, &plan);
+        let chosen = settings::choose(&set, preset, &plan);
         let chosen = chosen?;
         let first = first_points(&space, &self.start)?;
         let strategy = build_after(&chosen.settings, &space, self.seed, &first);

@@ -6,20 +6,17 @@ use crate::cli::{
         case::{CaseChoice, LoadedCase},
         workers::WorkersChoice,
     },
-    output::{
-        problem::{EXIT_CODES, Problem},
-        terminal,
-    },
-    run::{
-        manifest::{EVALUATE, Manifest, RunIdentity},
-        name::RunName,
-        opened::Run,
-        session::Session,
-    },
+    output::{problem::EXIT_CODES, terminal},
 };
 use case::require_record;
 use clap::Args;
 use messages::{Line, Tag};
+use run::{
+    manifest::{EVALUATE, Manifest, RunIdentity},
+    name::RunName,
+    opened::Run,
+    session::Session,
+};
 use search::space::Space;
 use serde::{Deserialize, Serialize};
 use std::{
@@ -31,6 +28,7 @@ use std::{
     },
 };
 use study::{EvaluationRequest, evaluate};
+use support::Problem;
 use tokio::sync::mpsc;
 
 /// Score individuals that another program asks for, on workers.
@@ -75,15 +73,16 @@ const WAITING: usize = 4096;
 
 /// Scores the individuals read from standard input until the input ends.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let session = Session::begin(&arguments.workers);
+    let session = Session::begin();
     let run = begin(arguments)?;
     let space = Space::new(&run.case.unknowns)?;
+    let options = arguments.workers.session()?;
     let (asking, mut requests) = mpsc::channel(WAITING);
     let refused = Arc::new(AtomicUsize::new(0));
     let counted = Arc::clone(&refused);
     // it blocks on the input, and is left behind when the work is over
     std::thread::spawn(move || read(&space, &asking, &counted));
-    session.work(&run, async |dispatch, stop| {
+    session.work(&run, &options, async |dispatch, stop| {
         let answer = &mut |tag: Tag, scored: &_| say(&Line::scored(&tag, scored));
         evaluate(dispatch, &run.case, &mut requests, answer, stop).await
     })?;

@@ -1,12 +1,12 @@
 //! `horsehead export --failed RUN`: writes the files that an external program left in each failed simulation
 //! into folders for inspection.
-use crate::cli::{output::problem::Problem, run::folder::RunFolder};
 use anyhow::Context as _;
 use journal::event::{Event, Finished};
 use protocol::{
     file::is_below,
     job::{Failure, FailureFiles, Outcome},
 };
+use run::folder::RunFolder;
 use serde::Serialize;
 use std::{
     fmt::Write as _,
@@ -14,6 +14,7 @@ use std::{
     os::unix::fs::PermissionsExt,
     path::{Path, PathBuf},
 };
+use support::Problem;
 
 const FOLDER: &str = "failed";
 /// Name of the file in each job's folder that states why the job failed.

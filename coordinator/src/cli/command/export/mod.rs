@@ -5,14 +5,15 @@ mod failed;
 use crate::cli::{
     argument::output::OutputChoice,
     output::{problem::EXIT_CODES, terminal},
-    run::{
-        folder::{CASE, MANIFEST, RunFolder},
-        manifest::Manifest,
-        tables::{self, Source},
-    },
 };
 use clap::{Args, ValueEnum};
 use protocol::case::Case;
+use run::{
+    folder::{CASE, MANIFEST, RunFolder},
+    manifest::Manifest,
+    message,
+    tables::{self, Source},
+};
 use serde::Serialize;
 use std::{collections::BTreeMap, path::PathBuf};
 use store::{Format, Target};
@@ -95,12 +96,12 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if arguments.failed {
         let to = arguments.to.as_deref();
         let object = failed::fetch(&arguments.run, to, arguments.force)?;
-        terminal::note(&object.notes);
+        message::print_notes(&object.notes);
         let text = || failed::text(&object);
         return terminal::print(arguments.output.output, text, &object);
     }
     let object = export(arguments)?;
-    terminal::note(&object.notes);
+    message::print_notes(&object.notes);
     terminal::print(arguments.output.output, || text(&object), &object)
 }
 

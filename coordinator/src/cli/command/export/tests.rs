@@ -1,17 +1,10 @@
 //! Tests of the export of whole runs: the tables agree with the search's evaluation log and with the journal.
 use super::*;
-use crate::cli::{
-    argument::output::Output,
-    output::{problem::Problem, progress::Silent},
-    run::{
-        calibration::calibrate,
-        dispatcher, manifest,
-        manifest::{CALIBRATE, FORMAT},
-        opened::Run,
-    },
+use crate::{
+    cli::{argument::output::Output, output::progress::Silent},
+    read_back::{self, Tables, Value},
+    test_evaluator::{TestEvaluator, case, physics},
 };
-use crate::read_back::{self, Tables, Value};
-use crate::test_evaluator::{TestEvaluator, case, physics};
 use journal::event::{Asked, Event, Finished, JobReason, RunHeader};
 use journal::{Journal, JournalEntry, StudyEntries};
 use protocol::{
@@ -19,6 +12,12 @@ use protocol::{
     job::{Answer, Job},
     message::{Attempt, Cost},
     wire,
+};
+use run::{
+    calibration::calibrate,
+    manifest::{self, CALIBRATE, FORMAT},
+    opened::Run,
+    session::dispatcher,
 };
 use search::{
     space::Space,
@@ -32,6 +31,7 @@ use std::{
 use study::{
     CalibrationResult, Completed, Entry, EvaluationLog, Evaluator, EvaluatorError, Snapshot,
 };
+use support::Problem;
 
 /// Evaluator that simulates with the test oracle and writes every result to a journal, as a run does; fails
 /// after `left` results, to imitate an interrupted run.

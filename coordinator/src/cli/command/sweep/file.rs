@@ -7,22 +7,23 @@ use crate::cli::{
         output::OutputChoice,
         workers::WorkersChoice,
     },
-    output::{problem::Problem, progress::Display, sweep::show_file},
-    run::{
-        hash,
-        manifest::Manifest,
-        name::RunName,
-        opened::Run,
-        searches::Searches,
-        session::Session,
-        sweep_file::{FileContent, SweptFile},
-    },
+    output::{progress::Display, sweep::show_file},
 };
 use case::{document::Document, require_record};
 use clap::Args;
+use run::{
+    hash,
+    manifest::Manifest,
+    name::RunName,
+    opened::Run,
+    searches::Searches,
+    session::Session,
+    sweep_file::{FileContent, SweptFile},
+};
 use search::space::Space;
 use std::path::{Path, PathBuf};
 use study::{Entry, Evaluator as _, Sweep, Watch as _, score_all};
+use support::Problem;
 
 #[derive(Debug, Args)]
 pub(super) struct FileArguments {
@@ -46,11 +47,11 @@ pub(super) struct FileArguments {
 
 /// Runs the sweep that a grid file or a table of individuals defines.
 pub(super) fn run(arguments: &FileArguments) -> anyhow::Result<()> {
-    let session = Session::begin(&arguments.workers);
+    let session = Session::begin();
     let (run, all) = begin(arguments)?;
     match (&run.manifest.settings.holds, all) {
-        (FileContent::Grid(searches), _) => search(&session, &run, searches)?,
-        (FileContent::Individuals(_), all) => score(&session, &run, &all)?,
+        (FileContent::Grid(searches), _) => search((&session, arguments), &run, searches)?,
+        (FileContent::Individuals(_), all) => score((&session, arguments), &run, &all)?,
     }
     show_file(&run, arguments.output.output)
 }
@@ -132,33 +133,49 @@ fn begin(arguments: &FileArguments) -> anyhow::Result<(Run<SweptFile>, Individua
 }
 
 /// Runs every search of a grid of settings.
-fn search(session: &Session, run: &Run<SweptFile>, searches: &Searches) -> anyhow::Result<()> {
+fn search(
+    (session, arguments): (&Session, &FileArguments),
+    run: &Run<SweptFile>,
+    searches: &Searches,
+) -> anyhow::Result<()> {
     let space = Space::new(&run.case.unknowns)?;
     let rows = rows(searches);
     let list = searches.list(&space, &rows)?;
-    session.work(run, async |dispatch, stop| {
-        let mut display = Display::counting("searches done", run.case.objective_unit());
-        display.resumed(dispatch.recorded());
-        let mut sweep = Sweep::new(&run.case, &space);
-        let found = sweep.run(dispatch, &list, &mut display, stop).await;
-        display.clear();
-        Ok(dispatch.enter(&Entry::Swept(searches.tried(&rows, &found?)))?)
-    })
+    session.work(
+        run,
+        &arguments.workers.session()?,
+        async |dispatch, stop| {
+            let mut display = Display::counting("searches done", run.case.objective_unit());
+            display.resumed(dispatch.recorded());
+            let mut sweep = Sweep::new(&run.case, &space);
+            let found = sweep.run(dispatch, &list, &mut display, stop).await;
+            display.clear();
+            Ok(dispatch.enter(&Entry::Swept(searches.tried(&rows, &found?)))?)
+        },
+    )
 }
 
 /// Scores every individual of a table.
-fn score(session: &Session, run: &Run<SweptFile>, all: &Individuals) -> anyhow::Result<()> {
+fn score(
+    (session, arguments): (&Session, &FileArguments),
+    run: &Run<SweptFile>,
+    all: &Individuals,
+) -> anyhow::Result<()> {
     let space = Space::new(&run.case.unknowns)?;
     let individuals: Vec<Vec<f64>> = all.rows.iter().map(|row| space.expand(row)).collect();
-    session.work(run, async |dispatch, stop| {
-        let mut display = Display::counting("tables done", run.case.objective_unit());
-        display.resumed(dispatch.recorded());
-        let found = score_all(dispatch, &run.case, &individuals, &mut display, stop).await;
-        display.clear();
-        found?;
-        for part in Entry::table(&all.names, &all.rows) {
-            dispatch.enter(&part)?;
-        }
-        Ok(())
-    })
+    session.work(
+        run,
+        &arguments.workers.session()?,
+        async |dispatch, stop| {
+            let mut display = Display::counting("tables done", run.case.objective_unit());
+            display.resumed(dispatch.recorded());
+            let found = score_all(dispatch, &run.case, &individuals, &mut display, stop).await;
+            display.clear();
+            found?;
+            for part in Entry::table(&all.names, &all.rows) {
+                dispatch.enter(&part)?;
+            }
+            Ok(())
+        },
+    )
 }

@@ -1,10 +1,6 @@
 //! File format of a settings grid: case, preset, fixed settings, and the values of the varied settings.
-use crate::cli::{
-    argument::settings::SettingsChoice,
-    output::problem::Problem,
-    run::{searches::Searches, sweep_file::combinations},
-};
 use case::document::{Document, DocumentStep};
+use run::{searches::Searches, sweep_file::combinations};
 use search::{
     space::Space,
     strategy::{CATALOGUE, preset},
@@ -12,6 +8,7 @@ use search::{
 use serde::Deserialize;
 use std::{collections::BTreeMap, path::PathBuf};
 use study::orthogonal::Factor;
+use support::Problem;
 
 /// Maximum number of searches in one sweep.
 const MAX_SEARCHES: usize = 100_000;
@@ -43,9 +40,9 @@ impl Grid {
         let name = self.preset.as_deref().unwrap_or("paper");
         let Some(preset) = preset(name) else {
             let names: Vec<&str> = CATALOGUE.iter().map(|preset| preset.name).collect();
-            let way = [DocumentStep::Key("preset")];
+            let keys = [DocumentStep::Key("preset")];
             let help = "`horsehead calibrate --help` says what each does";
-            return Err(document.field(&way, name, names.join(", "), help).into());
+            return Err(document.field(&keys, name, names.join(", "), help).into());
         };
         let seeds = self.seeds.unwrap_or_else(|| vec![1]);
         let twice = seeds
@@ -55,48 +52,46 @@ impl Grid {
         if seeds.is_empty() || twice {
             let value = format!("{seeds:?}");
             let help = "as seeds = [1, 2, 3]";
-            let way = [DocumentStep::Key("seeds")];
+            let keys = [DocumentStep::Key("seeds")];
             return Err(document
-                .field(&way, value, "different seeds, one at least", help)
+                .field(&keys, value, "different seeds, one at least", help)
                 .into());
         }
         if self.evaluations == Some(0) {
             let help = "a search needs one at least";
-            let way = [DocumentStep::Key("evaluations")];
-            return Err(document.field(&way, 0, "1 or more", help).into());
+            let keys = [DocumentStep::Key("evaluations")];
+            return Err(document.field(&keys, 0, "1 or more", help).into());
         }
-        let word = |way: &[DocumentStep<'_>], value: &toml::Value| match value {
+        let word = |keys: &[DocumentStep<'_>], value: &toml::Value| match value {
             toml::Value::String(word) => Ok(word.clone()),
             toml::Value::Integer(_) | toml::Value::Float(_) | toml::Value::Boolean(_) => {
                 Ok(value.to_string())
             }
             toml::Value::Datetime(_) | toml::Value::Array(_) | toml::Value::Table(_) => {
                 let help = "write one value, as `calibrate --set` takes it";
-                Err(document.field(way, value, "a number, a word, true or false", help))
+                Err(document.field(keys, value, "a number, a word, true or false", help))
             }
         };
         let mut factors = Vec::new();
         for (key, values) in &self.varied {
-            let way = [DocumentStep::Key("grid"), DocumentStep::Key(key)];
+            let keys = [DocumentStep::Key("grid"), DocumentStep::Key(key)];
             if values.is_empty() {
                 let help = "as population = [40, 80]";
                 return Err(document
-                    .field(&way, "[]", "one value at least", help)
+                    .field(&keys, "[]", "one value at least", help)
                     .into());
             }
             let levels = values.iter().enumerate().map(|(index, value)| {
-                let [table, key] = way;
+                let [table, key] = keys;
                 word(&[table, key, DocumentStep::Index(index)], value)
             });
             factors.push(Factor::new(key, levels.collect::<Result<Vec<_>, _>>()?));
         }
         let set = self.set.iter().map(|(key, value)| {
-            let way = [DocumentStep::Key("set"), DocumentStep::Key(key)];
-            Ok((key.clone(), word(&way, value)?))
+            let keys = [DocumentStep::Key("set"), DocumentStep::Key(key)];
+            Ok((key.clone(), word(&keys, value)?))
         });
-        let choice = SettingsChoice {
-            set: set.collect::<anyhow::Result<_>>()?,
-        };
+        let set = set.collect::<anyhow::Result<Vec<_>>>()?;
         let named = |error: Problem| Problem {
             message: format!("{}: {}", document.path.display(), error.message),
             remedy: error.remedy,
@@ -114,7 +109,7 @@ impl Grid {
             .into());
         }
         let budget = (self.evaluations, seeds);
-        let made = Searches::new(space, preset, &choice, factors, budget);
+        let made = Searches::new(space, preset, &set, factors, budget);
         let (searches, _) = made.map_err(named)?;
         searches.list(space, &rows(&searches))?;
         Ok(searches)

@@ -3,30 +3,26 @@
 use crate::cli::{
     argument::{
         case::{CaseChoice, LoadedCase},
-        factor,
         output::OutputChoice,
         settings::SettingsChoice,
         workers::WorkersChoice,
     },
-    output::{
-        problem::{EXIT_CODES, Problem},
-        progress::Display,
-        sweep::show_test,
-    },
-    run::{
-        manifest::{Manifest, RunIdentity as _},
-        name::RunName,
-        opened::Run,
-        orthogonal::{Orthogonal, test},
-        searches::Searches,
-        session::Session,
-    },
+    output::{problem::EXIT_CODES, progress::Display, sweep::show_test},
 };
 use anyhow::Context as _;
 use case::require_record;
 use clap::{
     Args,
     builder::{PossibleValuesParser, TypedValueParser as _},
+};
+use run::{
+    factor,
+    manifest::{Manifest, RunIdentity as _},
+    name::RunName,
+    opened::Run,
+    orthogonal::{Orthogonal, test},
+    searches::Searches,
+    session::Session,
 };
 use search::{
     space::Space,
@@ -35,6 +31,7 @@ use search::{
 use std::path::PathBuf;
 use study::orthogonal::{Array, Factor};
 use study::{Entry, Evaluator as _, Watch as _};
+use support::Problem;
 
 /// Test settings of a search by an orthogonal array; the same command resumes.
 #[derive(Debug, Args)]
@@ -171,7 +168,7 @@ fn begin(arguments: &Arguments) -> anyhow::Result<Run<Orthogonal>> {
     let preset = preset(&arguments.preset).context("the catalogue has lost a preset")?;
     let seeds = (0..arguments.seeds).map(|block| arguments.seed.wrapping_add(block));
     let budget = (arguments.evaluations, seeds.collect());
-    let (searches, set) = Searches::new(&space, preset, &arguments.settings, factors, budget)?;
+    let (searches, set) = Searches::new(&space, preset, &arguments.settings.set, factors, budget)?;
     // every row can be built before anything runs
     searches.list(&space, &arguments.array.rows(searches.factors.len()))?;
     let settings = Orthogonal {
@@ -206,14 +203,18 @@ fn begin(arguments: &Arguments) -> anyhow::Result<Run<Orthogonal>> {
 
 /// Runs the orthogonal test from the first search to the confirmation.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let session = Session::begin(&arguments.workers);
+    let session = Session::begin();
     let run = begin(arguments)?;
-    session.work(&run, async |dispatch, stop| {
-        let mut display = Display::counting("searches done", run.case.objective_unit());
-        display.resumed(dispatch.recorded());
-        let tested = test(dispatch, &run, &mut display, stop).await;
-        display.clear();
-        Ok(dispatch.enter(&Entry::Tested(Box::new(tested?)))?)
-    })?;
+    session.work(
+        &run,
+        &arguments.workers.session()?,
+        async |dispatch, stop| {
+            let mut display = Display::counting("searches done", run.case.objective_unit());
+            display.resumed(dispatch.recorded());
+            let tested = test(dispatch, &run, &mut display, stop).await;
+            display.clear();
+            Ok(dispatch.enter(&Entry::Tested(Box::new(tested?)))?)
+        },
+    )?;
     show_test(&run, arguments.output.output)
 }

@@ -6,31 +6,28 @@ use crate::cli::{
         output::OutputChoice,
         workers::{RemoteChoice, cores},
     },
-    output::{
-        problem::{EXIT_CODES, Problem},
-        progress::Display,
-        terminal,
-    },
-    run::{
-        dispatcher,
-        folder::RESULT,
-        interrupt,
-        manifest::{Manifest, RunIdentity as _},
-        name::RunName,
-        opened::Run,
-        scaling::{ScalingRun, ScalingSettings},
-        scaling_remote,
-    },
+    output::{problem::EXIT_CODES, progress::Display, terminal},
 };
 use ::report::{scaling as report, text};
 use anyhow::Context as _;
 use case::require_record;
 use clap::{Args, builder::PossibleValuesParser};
+use run::{
+    folder::RESULT,
+    manifest::{Manifest, RunIdentity as _},
+    message,
+    name::RunName,
+    opened::Run,
+    scaling::{ScalingRun, ScalingSettings},
+    scaling_remote,
+    session::{dispatcher, interrupt, launch::RemoteWorkers},
+};
 use search::{space::Space, strategy::CATALOGUE};
 use std::{fs, path::PathBuf};
 use study::scaling::ScalingResult;
+use support::Problem;
 
-/// Measure how searches scale with slots, and project it to more; the same command resumes.
+/// Measure how searches scale with slots; the same command resumes.
 #[derive(Debug, Args)]
 #[command(after_help = format!("\
 Examples:
@@ -38,12 +35,9 @@ Examples:
   horsehead sweep scaling cases/cyjs10-5-37hb --presets paper,paper-batch,window --populations 40,80
   horsehead sweep scaling cases/cyjs10-5-37hb --ssh node1,node2,node3,node4 --nodes 1,2,4
   horsehead sweep scaling cases/cyjs10-5-37hb --listen quic/0.0.0.0:7447 --tls keys --nodes 8
-  horsehead sweep scaling cases/cyjs10-5-37hb --sleeping 0 --projected 80 --output json
+  horsehead sweep scaling cases/cyjs10-5-37hb --crews 1,2,4,8 --output json
 
-Workers of this machine and remote ones simulate the case; sessions of one other process sleep,
-over TCP; slots of which there are not so many are projected, by the coordinator's own state
-machine on a simulated clock, from what was measured. What the projection takes for granted
-stands in the result.
+Workers of this machine and remote ones simulate the case.
 
 {EXIT_CODES}"))]
 pub(super) struct Arguments {
@@ -62,7 +56,7 @@ pub(super) struct Arguments {
     /// Population sizes, for presets that have one [default: that of each preset].
     #[arg(long, value_name = "N,..", value_delimiter = ',', env = "HORSEHEAD_POPULATIONS", value_parser = clap::value_parser!(u64).range(4..=100_000))]
     populations: Vec<u64>,
-    /// Evaluations of each search on workers of this machine, and of a sleeping one; of that at least 8 a slot.
+    /// Evaluations of each search.
     #[arg(long, value_name = "N", default_value_t = 160, env = "HORSEHEAD_EVALUATIONS", value_parser = clap::value_parser!(u64).range(4..=1_000_000))]
     evaluations: u64,
     /// Worker processes of this machine that simulate; 0 for none [default: 1 and one per core].
@@ -71,15 +65,6 @@ pub(super) struct Arguments {
     /// Numbers of remote workers to measure with [default: one for each host of --ssh or --hosts].
     #[arg(long, value_name = "N,..", value_delimiter = ',', env = "HORSEHEAD_NODES", value_parser = clap::value_parser!(u64).range(1..=1000))]
     nodes: Vec<u64>,
-    /// Numbers of sleeping sessions; 0 for none.
-    #[arg(long, value_name = "N,..", value_delimiter = ',', default_value = "64,512", env = "HORSEHEAD_SLEEPING", value_parser = clap::value_parser!(u64).range(0..=990))]
-    sleeping: Vec<u64>,
-    /// Mean sleep time of a job [s].
-    #[arg(long, value_name = "S", default_value_t = 1.0, env = "HORSEHEAD_SLEEP", value_parser = seconds)]
-    sleep: f64,
-    /// Numbers of slots to project to; 0 for none.
-    #[arg(long, value_name = "N,..", value_delimiter = ',', default_value = "80,1000,10000", env = "HORSEHEAD_PROJECTED", value_parser = clap::value_parser!(u64).range(0..=20_000))]
-    projected: Vec<u64>,
     /// Fixes every random choice.
     #[arg(long, default_value_t = 1, env = "HORSEHEAD_SEED")]
     seed: u64,
@@ -92,15 +77,6 @@ pub(super) struct Arguments {
     remote: RemoteChoice,
 }
 
-fn seconds(text: &str) -> Result<f64, String> {
-    let seconds: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
-    if (0.001..=3600.0).contains(&seconds) {
-        Ok(seconds)
-    } else {
-        Err("choose 0.001 to 3600".to_owned())
-    }
-}
-
 fn counts(all: &[u64]) -> Vec<u64> {
     let mut counts: Vec<u64> = all.iter().copied().filter(|count| *count > 0).collect();
     counts.sort_unstable();
@@ -109,8 +85,8 @@ fn counts(all: &[u64]) -> Vec<u64> {
 }
 
 /// Returns the numbers of remote workers to measure with; none if no remote workers are admitted.
-fn nodes(arguments: &Arguments) -> Result<Vec<u64>, Problem> {
-    let hosts = arguments.remote.hosts.read()?.len() as u64;
+fn nodes(arguments: &Arguments, remote: &RemoteWorkers) -> Result<Vec<u64>, Problem> {
+    let hosts = remote.hosts.len() as u64;
     let nodes = counts(&arguments.nodes);
     let refuse = |message: String, remedy: &str| {
         Err(Problem {
@@ -136,7 +112,7 @@ fn nodes(arguments: &Arguments) -> Result<Vec<u64>, Problem> {
     }
 }
 
-fn begin(arguments: &Arguments) -> anyhow::Result<Run<ScalingSettings>> {
+fn begin(arguments: &Arguments, remote: &RemoteWorkers) -> anyhow::Result<Run<ScalingSettings>> {
     let LoadedCase {
         case,
         measured,
@@ -154,10 +130,7 @@ fn begin(arguments: &Arguments) -> anyhow::Result<Run<ScalingSettings>> {
         populations: counts(&arguments.populations),
         evaluations: arguments.evaluations,
         crews: counts(&crews),
-        nodes: nodes(arguments)?,
-        sleeping: counts(&arguments.sleeping),
-        sleep_s: arguments.sleep,
-        projected: counts(&arguments.projected),
+        nodes: nodes(arguments, remote)?,
     };
     if settings.crews.is_empty() && settings.nodes.is_empty() {
         return Err(Problem {
@@ -195,9 +168,10 @@ fn begin(arguments: &Arguments) -> anyhow::Result<Run<ScalingSettings>> {
     Run::begin(&path, manifest, case)
 }
 
-/// Measures, projects and prints the scaling of the searches.
+/// Measures and prints the scaling of the searches.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let run = begin(arguments)?;
+    let remote = arguments.remote.workers()?;
+    let run = begin(arguments, &remote)?;
     let folder = run.folder.path();
     fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
     run.save(0.0)?;
@@ -208,11 +182,10 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         let mut scale = ScalingRun::new(&run, &space);
         let scaled = async {
             let mut measured = scale.measure_local(&mut display, &mut stop).await?;
-            let remote = &arguments.remote;
             measured.extend(
-                scaling_remote::measure(&mut scale, remote, &mut display, &mut stop).await?,
+                scaling_remote::measure(&mut scale, &remote, &mut display, &mut stop).await?,
             );
-            scale.complete(measured).await
+            anyhow::Ok(ScalingResult::new(measured))
         };
         let scaled = scaled.await;
         display.clear();
@@ -221,7 +194,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let scaled = scaled.inspect_err(|_| {
         let path = run.folder.path().display();
         let command = &run.manifest.command;
-        terminal::tell(&format!(
+        message::print(&format!(
             "the rows finished so far are kept in {path}; to resume:\n  {command}"
         ));
     })?;
@@ -242,7 +215,7 @@ fn show(
     let files = report::write(run.folder.path(), &subject)?;
     run.folder.write_json(RESULT, scaled)?;
     let page = files.first().map(|page| page.display().to_string());
-    terminal::tell(&format!("open {}", page.unwrap_or_default()));
+    message::print(&format!("open {}", page.unwrap_or_default()));
     let tables = || text(&report::report(&subject), terminal::style());
     terminal::print(output.output, tables, scaled)
 }

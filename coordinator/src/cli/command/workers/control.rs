@@ -2,19 +2,20 @@
 //! socket.
 use crate::cli::{
     argument::{nodes::HostsChoice, output::OutputChoice},
-    output::{problem::Problem, terminal},
-    run::launch::execute,
+    output::terminal,
 };
 use clap::Args;
 use dispatch::runtime::control::{self, SOCKET, messages::ControlRequest};
 use dispatch::scheduler::{WorkerPhase, WorkerReport};
 use launch::ssh::{self, EndedWorkers};
 use report::table::{Row, Table, text};
+use run::{message, session::launch::execute};
 use serde::Serialize;
 use std::{
     fs,
     path::{Path, PathBuf},
 };
+use support::Problem;
 
 pub(super) const LIST: &str = "\
 Examples:
@@ -115,7 +116,7 @@ pub(super) fn drain(arguments: &DrainArguments) -> anyhow::Result<()> {
         end: false,
     };
     let workers = ask(&arguments.run.folder()?, &question)?;
-    tell(&workers, arguments.now, "gets no more jobs");
+    print_request(&workers, arguments.now, "gets no more jobs");
     Ok(())
 }
 
@@ -138,7 +139,7 @@ pub(super) fn down(arguments: &DownArguments) -> anyhow::Result<()> {
         let remote = workers.into_iter().filter(|worker| !worker.local);
         names = remote.map(|worker| worker.id).collect();
         if names.is_empty() {
-            terminal::tell(&match all {
+            message::print(&match all {
                 0 => "no worker takes part".to_owned(),
                 all => format!(
                     "the run started its {all} workers itself and needs them; --all ends them too"
@@ -153,12 +154,12 @@ pub(super) fn down(arguments: &DownArguments) -> anyhow::Result<()> {
         end: true,
     };
     let workers = ask(&folder, &question)?;
-    tell(&workers, arguments.now, "ends");
+    print_request(&workers, arguments.now, "ends");
     Ok(())
 }
 
 /// Prints for each drained or ended worker what happens to it and to the jobs that it holds.
-fn tell(workers: &[WorkerReport], now: bool, what: &str) {
+fn print_request(workers: &[WorkerReport], now: bool, what: &str) {
     for WorkerReport {
         name, host, jobs, ..
     } in workers
@@ -168,10 +169,10 @@ fn tell(workers: &[WorkerReport], now: bool, what: &str) {
             (held, true) => format!(", and hands back {held} jobs"),
             (held, false) => format!(" after the {held} jobs that it holds"),
         };
-        terminal::tell(&format!("{name} on {host} {what}{held}"));
+        message::print(&format!("{name} on {host} {what}{held}"));
     }
     if workers.is_empty() {
-        terminal::tell("no worker takes part");
+        message::print("no worker takes part");
     }
 }
 

@@ -2,7 +2,6 @@
 use crate::cli::{
     argument::nodes::{HostsChoice, LaunchChoice},
     output::terminal,
-    run::launch::{execute, programs},
 };
 use clap::{ArgGroup, Args};
 use launch::{LaunchPlan, WorkerOptions, k8s, keys, slurm, ssh, systemd};
@@ -10,6 +9,7 @@ use link::{
     keys::{KeyRole, Keys},
     locator::{Locator, Protocol},
 };
+use run::session::launch::{execute, programs};
 use std::{
     env,
     path::{Path, PathBuf},

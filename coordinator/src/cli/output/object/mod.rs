@@ -4,6 +4,8 @@ pub(crate) mod calibration;
 pub(in crate::cli) mod diagnosis;
 pub(in crate::cli) mod identification;
 pub(crate) mod orthogonal;
+#[cfg(test)]
+mod pumping_unit_tests;
 pub(crate) mod score;
 pub(crate) mod scored;
 pub(crate) mod simulation;

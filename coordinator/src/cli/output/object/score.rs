@@ -1,6 +1,6 @@
 //! JSON forms of unknowns and of the agreement with measured records, shared by the objects of several
 //! commands.
-use crate::kind;
+use crate::cli::output::model;
 use discrepancy::identify::{Determination, UnknownEstimate};
 use protocol::{
     case::Case,
@@ -113,7 +113,7 @@ pub(crate) fn channels(
     let scores = evaluation.map_or(&[][..], |evaluation| &evaluation.channels);
     let output = |score: &ChannelScore| {
         let channel = case.channels.get(score.channel)?;
-        let (key, own) = kind::of(case).scored(channel, score);
+        let (key, own) = model::of(case).scored(channel, score);
         let output = ScoreOutput {
             unit: channel.unit.clone(),
             mse: score.mse,

@@ -1,6 +1,6 @@
 //! JSON object of `horsehead simulate`.
 use super::score::{ScoreOutput, Unknowns, channels, objective, unknowns};
-use crate::kind;
+use crate::cli::output::model;
 use protocol::{
     case::Case,
     job::{Counters, Derivative, Reached, Verdict},
@@ -83,7 +83,7 @@ fn derivatives(
     curves: &ComparedCurves,
     derived: &[String],
 ) -> Map<String, Value> {
-    let kind = kind::of(case);
+    let kind = model::of(case);
     let one = |(at, name): (usize, &String)| {
         let said = match curves.drawn.columns.get(at) {
             Some(Derivative::Curves { per, curves }) => {
@@ -128,7 +128,7 @@ pub(crate) fn simulation<'a>(
         channels: channels(case, curves.evaluation.as_ref()),
         derivatives: (!derived.is_empty()).then(|| derivatives(case, condition, curves, derived)),
         derivatives_wall_s: (!derived.is_empty()).then_some(curves.drawn.columns_wall_s),
-        drawn: kind::of(case).drawn(case, condition, &curves.drawn)?,
+        drawn: model::of(case).drawn(case, condition, &curves.drawn)?,
         digest,
     })
 }

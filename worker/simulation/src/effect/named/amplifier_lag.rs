@@ -27,6 +27,10 @@ impl Effect for Lag {
 }
 
 impl Reading for Lag {
+    fn needs_loads(&self) -> bool {
+        false
+    }
+
     fn series(&self, spacing: f64, stress: &mut [Vec<f64>; 4]) {
         for curve in stress {
             lagged(curve, spacing / self.lag);

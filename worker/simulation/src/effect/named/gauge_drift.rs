@@ -15,9 +15,9 @@ pub(super) fn descriptor() -> Descriptor {
             0.5,
             [-20.0, 20.0],
         )
-        .with_reading(|v, at, stress| {
+        .with_reading(|v, elapsed, stress| {
             for (stress, drift) in stress.iter_mut().zip(v.in_order()) {
-                *stress += drift * at.elapsed;
+                *stress += drift * elapsed;
             }
         })
 }

@@ -15,8 +15,8 @@ use crate::math::elementary::sin_cos;
 use crate::model::cycle::Cycle;
 use crate::model::description::{AddedMode, Description};
 use crate::model::extension::{Dashpot, Effect, Extensions, Force, Site};
-use crate::model::instant::Instant;
 use crate::model::layout::MAX_MODES;
+use crate::model::machine_state::MachineState;
 use std::f64::consts::TAU;
 
 pub(super) fn descriptor() -> Descriptor {
@@ -124,7 +124,7 @@ struct FrontPull {
 impl FrontPull {
     /// Returns the terms of the force: the load divided by `sqrt(m)`; the pivot's height times `sqrt(m)` with
     /// its derivative with respect to the beam angle; sine and cosine of the beam angle.
-    fn parts(&self, at: &Instant<'_>) -> (f64, [f64; 2], (f64, f64)) {
+    fn parts(&self, at: &MachineState<'_>) -> (f64, [f64; 2], (f64, f64)) {
         let (s, c) = sin_cos(at.q[self.beam]);
         let (x, y) = (at.q[self.along], at.q[self.across]);
         let pull = (at.drive.load + self.weight) / self.root;
@@ -133,14 +133,14 @@ impl FrontPull {
 }
 
 impl Force for FrontPull {
-    fn add(&self, at: &Instant<'_>, force: &mut [f64]) {
+    fn add(&self, at: &MachineState<'_>, force: &mut [f64]) {
         let (pull, [_, turned], (s, c)) = self.parts(at);
         force[self.along] -= pull * s;
         force[self.across] -= pull * c;
         force[self.beam] -= pull * turned;
     }
 
-    fn add_tangent(&self, at: &Instant<'_>, _: f64, matrix: &mut Bordered) {
+    fn add_tangent(&self, at: &MachineState<'_>, _: f64, matrix: &mut Bordered) {
         let (pull, [height, _], (s, c)) = self.parts(at);
         for (index, value) in [(self.along, pull * c), (self.across, -(pull * s))] {
             matrix.add(index, self.beam, value);
@@ -149,17 +149,17 @@ impl Force for FrontPull {
         matrix.add(self.beam, self.beam, -(pull * height));
     }
 
-    fn energy(&self, _: &Instant<'_>) -> f64 {
+    fn energy(&self, _: &MachineState<'_>) -> f64 {
         0.0
     }
 
-    fn potential(&self, at: &Instant<'_>) -> f64 {
+    fn potential(&self, at: &MachineState<'_>) -> f64 {
         let (pull, [height, _], _) = self.parts(at);
         pull * height
     }
 
     /// Computes the power that the load at the front head receives as the pivot sinks \[W\].
-    fn lost(&self, at: &Instant<'_>) -> f64 {
+    fn lost(&self, at: &MachineState<'_>) -> f64 {
         let (pull, [_, turned], (s, c)) = self.parts(at);
         pull * (s * at.v[self.along] + c * at.v[self.across] + turned * at.v[self.beam])
     }

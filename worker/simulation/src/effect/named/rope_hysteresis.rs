@@ -14,7 +14,7 @@ use crate::effect::descriptor::{Descriptor, Place};
 use crate::effect::unit::Unit;
 use crate::math::elementary::exp;
 use crate::model::extension::{Axial, Effect, Extensions, LineForceValue, Memory, Site, Strain};
-use crate::model::strand::{BACK, FRONT};
+use crate::model::parallel_ropes::{BACK, FRONT};
 
 pub(super) fn descriptor() -> Descriptor {
     Descriptor::new(

@@ -9,7 +9,7 @@ use crate::effect::descriptor::{Descriptor, Place};
 use crate::effect::unit::Unit;
 use crate::math::elementary::exp;
 use crate::model::extension::{Axial, Effect, Extensions, LineForceValue, Site, Strain};
-use crate::model::strand::{BACK, FRONT};
+use crate::model::parallel_ropes::{BACK, FRONT};
 
 pub(super) fn descriptor() -> Descriptor {
     Descriptor::new("rope_toe", "Soft toe of the ropes at low tension")

@@ -4,7 +4,7 @@ use crate::drive::DriveState;
 use crate::effect::{Descriptor, Effect, Hollow, Place, Role, SampleState, Unit, catalogue};
 use crate::model::extension::axial::RopeProperties;
 use crate::model::extension::{Extensions, Site};
-use crate::model::{Instant, Machine};
+use crate::model::{Machine, MachineState};
 use crate::reference;
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -45,7 +45,7 @@ fn trace(effect: Arc<dyn Effect>) -> Vec<f64> {
         let q: Vec<f64> = (0..n).map(|i| 0.3 * scattered(i + k)).collect();
         let v: Vec<f64> = (0..n).map(|i| size * scattered(2 * i + k)).collect();
         let mut force = vec![0.0; n];
-        let at = Instant {
+        let at = MachineState {
             ropes: &ropes,
             drive: &drive,
             q: &q,

@@ -12,10 +12,10 @@
 //! patch test. With the factor removed, this element reproduces the frequencies of C3D8I to 1e-4; with the
 //! factor, to 0.6 %.
 use super::face::{Face, Quadrilateral};
-use super::integral::{add_stiffness, add_weight, jacobian};
+use super::integral::{add_stiffness, add_weight, extrapolated, jacobian};
 use super::interface::{Element, InsideOut, Matrices};
 use super::steel::Steel;
-use nalgebra::{DMatrix, SMatrix, Vector3};
+use nalgebra::{DMatrix, Matrix3, SMatrix, SVector, Vector3};
 
 /// Number of nodal displacements of one element (24).
 const DOFS: usize = 24;
@@ -105,36 +105,16 @@ impl Element for Hexahedron {
 
     /// Computes the element's stiffness and mass matrices after condensation of the incompatible modes.
     fn matrices(&self, nodes: &[[f64; 3]], steel: &Steel) -> Result<Matrices, InsideOut> {
-        const ALL: usize = DOFS + INNER;
-        let lame = steel.lame();
-        let center = jacobian(&slopes(&[0.0; 3]), nodes);
-        let center_inverse = center.try_inverse().ok_or(InsideOut)?;
-        let mut full = Box::new(SMatrix::<f64, ALL, ALL>::zeros());
+        let points = integration_points(nodes)?;
         let mut weight = [[0.0; SHAPES]; SHAPES];
-        for point in gauss() {
-            let slopes = slopes(&point);
-            let jacobian = jacobian(&slopes, nodes);
-            let volume = jacobian.determinant();
-            if volume <= 0.0 {
-                return Err(InsideOut);
-            }
-            let inverse = jacobian.try_inverse().ok_or(InsideOut)?;
-            let mut gradients = [Vector3::zeros(); SHAPES];
-            for (gradient, slope) in gradients.iter_mut().zip(slopes) {
-                *gradient = inverse * slope;
-            }
-            let ratio = center.determinant() / volume;
-            for (k, gradient) in gradients[8..].iter_mut().enumerate() {
-                *gradient = center_inverse.column(k) * (-2.0 * point[k] * ratio);
-            }
-            add_stiffness(&mut full, &gradients, lame, volume);
-            add_weight(&mut weight, &all_shapes(&point), steel.density * volume);
+        for point in &points {
+            let mass = steel.density * point.volume;
+            add_weight(&mut weight, &all_shapes(&point.place), mass);
         }
+        let full = stiffness(&points, steel);
         let outer = full.fixed_view::<DOFS, DOFS>(0, 0);
         let mixed = full.fixed_view::<INNER, DOFS>(DOFS, 0).into_owned();
-        let inner = full.fixed_view::<INNER, INNER>(DOFS, DOFS).into_owned();
-        // the incompatible modes follow the nodes by minus this
-        let follow = inner.cholesky().ok_or(InsideOut)?.solve(&mixed);
+        let follow = follow(&full)?;
         let stiffness: Square = outer - mixed.transpose() * follow;
         let mass = condensed(&weight, &follow);
         let dynamic = |matrix: &Square| DMatrix::from_column_slice(DOFS, DOFS, matrix.as_slice());
@@ -143,6 +123,104 @@ impl Element for Hexahedron {
             mass: dynamic(&mass),
         })
     }
+
+    fn corner_stress(
+        &self,
+        nodes: &[[f64; 3]],
+        steel: &Steel,
+        fields: &[Vec<[f64; 3]>],
+    ) -> Result<Vec<Vec<[f64; 6]>>, InsideOut> {
+        let points = integration_points(nodes)?;
+        let follow = follow(&stiffness(&points, steel))?;
+        // the integration points are the corners of a smaller brick, beyond which the stress is continued
+        let reach = 3.0_f64.sqrt();
+        let shares = CORNERS.map(|corner| shape(&corner.map(|sign| sign * reach)));
+        let corners = |field: &Vec<[f64; 3]>| {
+            let outer = SVector::<f64, DOFS>::from_iterator(field.iter().flatten().copied());
+            let inner = -(follow * outer);
+            let stress = |point: &IntegrationPoint| {
+                let mut slope = Matrix3::zeros();
+                let amplitudes = outer.as_slice().chunks(3).chain(inner.as_slice().chunks(3));
+                for (gradient, u) in point.gradients.iter().zip(amplitudes) {
+                    slope += Vector3::from_column_slice(u) * gradient.transpose();
+                }
+                steel.stress(&slope)
+            };
+            let inside: Vec<[f64; 6]> = points.iter().map(stress).collect();
+            let corner = |shares: &[f64; 8]| extrapolated(shares, &inside);
+            shares.iter().map(corner).collect()
+        };
+        Ok(fields.iter().map(corners).collect())
+    }
+
+    fn faces(&self) -> &'static [[usize; 4]] {
+        &[
+            [0, 3, 2, 1],
+            [0, 1, 5, 4],
+            [0, 4, 7, 3],
+            [1, 2, 6, 5],
+            [2, 3, 7, 6],
+            [4, 5, 6, 7],
+        ]
+    }
+}
+
+/// Number of all displacements of one element: those of its nodes and its internal amplitudes.
+const ALL: usize = DOFS + INNER;
+
+/// Integration point of an element.
+struct IntegrationPoint {
+    /// Reference coordinates of the point.
+    place: [f64; 3],
+    /// Gradients of all shape functions at the point [1/m].
+    gradients: [Vector3<f64>; SHAPES],
+    /// Volume that the point stands for \[m3\].
+    volume: f64,
+}
+
+/// Computes the integration points of an element.
+fn integration_points(nodes: &[[f64; 3]]) -> Result<Vec<IntegrationPoint>, InsideOut> {
+    let center = jacobian(&slopes(&[0.0; 3]), nodes);
+    let center_inverse = center.try_inverse().ok_or(InsideOut)?;
+    let point = |place: [f64; 3]| {
+        let slopes = slopes(&place);
+        let jacobian = jacobian(&slopes, nodes);
+        let volume = jacobian.determinant();
+        if volume <= 0.0 {
+            return Err(InsideOut);
+        }
+        let inverse = jacobian.try_inverse().ok_or(InsideOut)?;
+        let mut gradients = [Vector3::zeros(); SHAPES];
+        for (gradient, slope) in gradients.iter_mut().zip(slopes) {
+            *gradient = inverse * slope;
+        }
+        let ratio = center.determinant() / volume;
+        for (k, gradient) in gradients[8..].iter_mut().enumerate() {
+            *gradient = center_inverse.column(k) * (-2.0 * place[k] * ratio);
+        }
+        Ok(IntegrationPoint {
+            place,
+            gradients,
+            volume,
+        })
+    };
+    gauss().into_iter().map(point).collect()
+}
+
+/// Computes the stiffness over all displacements of an element, before condensation.
+fn stiffness(points: &[IntegrationPoint], steel: &Steel) -> Box<SMatrix<f64, ALL, ALL>> {
+    let mut full = Box::new(SMatrix::<f64, ALL, ALL>::zeros());
+    for point in points {
+        add_stiffness(&mut full, &point.gradients, steel.lame(), point.volume);
+    }
+    full
+}
+
+/// Computes the matrix that gives minus the amplitudes of the incompatible modes from the nodal displacements.
+fn follow(full: &SMatrix<f64, ALL, ALL>) -> Result<SMatrix<f64, INNER, DOFS>, InsideOut> {
+    let mixed = full.fixed_view::<INNER, DOFS>(DOFS, 0).into_owned();
+    let inner = full.fixed_view::<INNER, INNER>(DOFS, DOFS).into_owned();
+    Ok(inner.cholesky().ok_or(InsideOut)?.solve(&mixed))
 }
 
 /// Computes the mass `T' M T` over the nodal displacements, with M the mass over all shape functions and `T =

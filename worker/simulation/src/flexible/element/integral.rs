@@ -47,3 +47,14 @@ pub(super) fn add_weight<const SHAPES: usize>(
         }
     }
 }
+
+/// Returns the stress at a point as the sum of the stresses at the integration points, times the share of each.
+pub(super) fn extrapolated(shares: &[f64], inside: &[[f64; 6]]) -> [f64; 6] {
+    let mut stress = [0.0; 6];
+    for (share, inside) in shares.iter().zip(inside) {
+        for (stress, inside) in stress.iter_mut().zip(inside) {
+            *stress += share * inside;
+        }
+    }
+    stress
+}

@@ -47,6 +47,22 @@ pub(in crate::flexible) trait Element: Sync {
     /// # Errors
     /// [`InsideOut`] if the determinant of the Jacobian is not positive at an integration point.
     fn matrices(&self, nodes: &[[f64; 3]], steel: &Steel) -> Result<Matrices, InsideOut>;
+
+    /// Computes the stress \[Pa\] at the element's corners under each of several displacement fields, given at the
+    /// element's nodes: xx, yy, zz, xy, yz, zx, extrapolated from the integration points of the stiffness.
+    ///
+    /// # Errors
+    /// As [`Self::matrices`].
+    fn corner_stress(
+        &self,
+        nodes: &[[f64; 3]],
+        steel: &Steel,
+        fields: &[Vec<[f64; 3]>],
+    ) -> Result<Vec<Vec<[f64; 6]>>, InsideOut>;
+
+    /// Returns the corners of each face of the element, outward seen counter-clockwise; a triangle repeats its last
+    /// corner.
+    fn faces(&self) -> &'static [[usize; 4]];
 }
 
 impl dyn Element {
@@ -93,7 +109,6 @@ impl dyn Element {
         nodes: &[[f64; 3]],
         displacement: &[[f64; 3]],
     ) -> [f64; 6] {
-        let (first, shear) = steel.lame();
         let slopes = self.slopes(&self.center());
         let Some(inverse) = jacobian(&slopes, nodes).try_inverse() else {
             return [0.0; 6];
@@ -102,16 +117,6 @@ impl dyn Element {
         for (reference, u) in slopes.iter().zip(displacement) {
             slope += Vector3::from(*u) * (inverse * reference).transpose();
         }
-        let pressure = first * slope.trace();
-        let normal = |k: usize| pressure + 2.0 * shear * slope[(k, k)];
-        let sliding = |i: usize, j: usize| shear * (slope[(i, j)] + slope[(j, i)]);
-        [
-            normal(0),
-            normal(1),
-            normal(2),
-            sliding(0, 1),
-            sliding(1, 2),
-            sliding(2, 0),
-        ]
+        steel.stress(&slope)
     }
 }

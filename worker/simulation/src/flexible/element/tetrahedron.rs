@@ -9,10 +9,10 @@
 //! zero-energy modes; mass with 15 points of degree 5 ([Stroud1971], T3:5-1), exact for straight edges, and
 //! exact in the total mass for curved edges. This module knows one element and no mesh.
 use super::face::{Face, Triangle};
-use super::integral::{add_stiffness, add_weight, jacobian};
+use super::integral::{add_stiffness, add_weight, extrapolated, jacobian};
 use super::interface::{Element, InsideOut, Matrices};
 use super::steel::Steel;
-use nalgebra::{DMatrix, SMatrix, Vector3};
+use nalgebra::{DMatrix, Matrix3, SMatrix, Vector3};
 
 /// Number of nodes of one element.
 const NODES: usize = 10;
@@ -149,6 +149,47 @@ impl Element for Tetrahedron {
             stiffness: DMatrix::from_column_slice(DOFS, DOFS, stiffness.as_slice()),
             mass: DMatrix::from_fn(DOFS, DOFS, mass),
         })
+    }
+
+    fn corner_stress(
+        &self,
+        nodes: &[[f64; 3]],
+        steel: &Steel,
+        fields: &[Vec<[f64; 3]>],
+    ) -> Result<Vec<Vec<[f64; 6]>>, InsideOut> {
+        let gradients = |(point, _): ([f64; 3], f64)| {
+            let slopes = slopes(&point);
+            let inverse = jacobian(&slopes, nodes).try_inverse().ok_or(InsideOut)?;
+            Ok(slopes.map(|slope| inverse * slope))
+        };
+        let points: Vec<[Vector3<f64>; NODES]> =
+            degree_2().map(gradients).collect::<Result<_, _>>()?;
+        // a linear function of the volume coordinates, of which the points have `rest` thrice and `most` once
+        let rest = (5.0 - 5.0_f64.sqrt()) / 20.0;
+        let most = 1.0 - 3.0 * rest;
+        let shares: [[f64; 4]; 4] = std::array::from_fn(|corner| {
+            std::array::from_fn(|point| {
+                let own = if point == corner { 1.0 } else { 0.0 };
+                (own - rest) / (most - rest)
+            })
+        });
+        let corners = |field: &Vec<[f64; 3]>| {
+            let stress = |gradients: &[Vector3<f64>; NODES]| {
+                let mut slope = Matrix3::zeros();
+                for (gradient, u) in gradients.iter().zip(field) {
+                    slope += Vector3::from(*u) * gradient.transpose();
+                }
+                steel.stress(&slope)
+            };
+            let inside: Vec<[f64; 6]> = points.iter().map(stress).collect();
+            let corner = |shares: &[f64; 4]| extrapolated(shares, &inside);
+            shares.iter().map(corner).collect()
+        };
+        Ok(fields.iter().map(corners).collect())
+    }
+
+    fn faces(&self) -> &'static [[usize; 4]] {
+        &[[0, 2, 1, 1], [0, 1, 3, 3], [0, 3, 2, 2], [3, 1, 2, 2]]
     }
 }
 

@@ -4,6 +4,7 @@ mod cholesky;
 mod coupling;
 mod halves;
 mod split;
+mod surface;
 mod tetrahedra;
 
 use super::{
@@ -150,6 +151,18 @@ fn patch(mut mesh: Mesh) -> usize {
                 "{ours} {theirs}"
             );
         }
+        let corners = mesh
+            .law()
+            .corner_stress(&mesh.places(element), &STEEL, &[moved])
+            .unwrap();
+        for stress in &corners[0] {
+            for (ours, theirs) in stress.iter().zip(expected) {
+                assert!(
+                    (ours - theirs).abs() < 1e-6 * shear * 1e-3,
+                    "corner: {ours} {theirs}"
+                );
+            }
+        }
     }
     mesh.nodes.iter().filter(|n| inner(n)).count()
 }
@@ -278,6 +291,7 @@ fn request<'a>(
         modes: 8,
         families,
         patterns: &[],
+        surface: None,
         fields: true,
     }
 }

@@ -1,6 +1,6 @@
 //! Neighbouring cylinders of a chain near its arc, evaluated side by side in SIMD lanes: geometry and law at their
 //! contact points, and the sums of the forces.
-use crate::element::impact::Impact;
+use crate::element::impact::{DerivativeVariable, Impact};
 use crate::element::law::ForceLaw;
 use crate::math::real::{Real as _, Vector, WIDEST};
 use crate::math::spline::sum::{FORCE_MOMENTS, KNOTS, LocalCubic, force_moments};
@@ -81,7 +81,7 @@ pub(super) const fn index(place: f64) -> usize {
     reason = "compiled for each set of instructions"
 )]
 #[inline(always)]
-fn read<S: Simd>(simd: S, each: &Each, k: usize) -> Vector<S> {
+pub(super) fn read<S: Simd>(simd: S, each: &Each, k: usize) -> Vector<S> {
     Vector::new(simd, S::as_simd_f64s(each).0[k])
 }
 
@@ -91,7 +91,7 @@ fn read<S: Simd>(simd: S, each: &Each, k: usize) -> Vector<S> {
     reason = "compiled for each set of instructions"
 )]
 #[inline(always)]
-fn write<S: Simd>(each: &mut Each, k: usize, vector: Vector<S>) {
+pub(super) fn write<S: Simd>(each: &mut Each, k: usize, vector: Vector<S>) {
     S::as_mut_simd_f64s(each).0[k] = vector.lanes();
 }
 
@@ -347,6 +347,21 @@ impl Group {
             }
         }
         surfaces
+    }
+
+    /// Replaces the contact forces by their derivatives with respect to the coefficient `by` of the law.
+    #[expect(
+        clippy::inline_always,
+        reason = "compiled for each set of instructions"
+    )]
+    #[inline(always)]
+    pub(super) fn differentiate<S: Simd>(&mut self, simd: S, law: &Impact, by: DerivativeVariable) {
+        for k in 0..WIDEST / S::F64_LANES {
+            for i in 0..POINTS {
+                let [depth, rate] = [&self.depth[i], &self.rate[i]].map(|each| read(simd, each, k));
+                write(&mut self.force[i], k, law.derivative(depth, rate, by));
+            }
+        }
     }
 
     /// Sums the contact forces of each cylinder over its points and, where `local`, the moments of the forces

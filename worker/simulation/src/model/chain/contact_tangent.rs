@@ -9,29 +9,35 @@
 //! respect to all of them, a point adds `G F^T` and the force times the second derivatives of the penetration
 //! to the stiffness `K`, and `c G G^T` to the damping `D`. A matrix `K + gamma D` alone takes `F + gamma c G`
 //! in place of `F`, which saves the sums of `D`.
-use super::contact_point::{BORDER, Derivatives, FEW, OWN};
+use super::contact_group::{Each, Group, read, write};
+use super::contact_point::{BORDER, FEW, ModeShapes, OWN, PointMotion, PointTangent};
 use super::parts::Chain;
-use super::points::{ContactPoint, Points};
+use super::points::Points;
 use super::state::ChainState;
 use crate::element::impact::Impact;
+use crate::element::law::ForceLaw;
 use crate::linear::Bordered;
-use crate::model::contact::Surface;
+use crate::math::real::{Real, Vector, WIDEST};
+use crate::model::contact::{POINTS, Surface};
 use crate::model::layout::Motion;
-use crate::model::pose::InPlane;
+use crate::model::pose::Pose;
 use pulp::{Arch, Simd, WithSimd};
 
-/// Accumulator for the contact tangent of one chain, with room for `B` border coordinates (beam angle,
-/// modes).
-struct Tangent<'a, const B: usize> {
+/// Assembly of the contact tangent of one chain, with room for `B` border coordinates (beam angle, modes).
+/// `BOTH`: `K` and `K + gamma D` into two matrices, otherwise `K + gamma D` alone.
+struct Tangent<'a, const B: usize, const BOTH: bool> {
     chain: &'a Chain,
     surface: &'a Surface<'a>,
     law: &'a Impact,
+    gamma: f64,
     /// Number of border coordinates (beam angle, modes) included.
     border: usize,
-    corner: [[f64; B]; B],
+    /// Sums within the border: of `K` or of `K + gamma D`, and of `gamma D` alone.
+    corner: [[[f64; B]; B]; 2],
 }
 
 /// Tangent matrix of one cylinder's contact, summed over its contact points.
+#[derive(Clone, Copy)]
 struct Sums<const B: usize> {
     own: [[f64; OWN]; OWN],
     /// Sums in the rows of the cylinder and the columns of the border.
@@ -39,6 +45,38 @@ struct Sums<const B: usize> {
     /// Sums in the rows of the border and the columns of the cylinder, stored transposed.
     bottom: [[f64; B]; OWN],
 }
+
+/// Quantities of a contact point from which the sums of its cylinder follow: `T` is a number, or one for each
+/// of some neighbouring cylinders.
+#[derive(Clone, Copy, Default)]
+#[repr(align(32))]
+struct Terms<T> {
+    /// Derivatives of penetration and force with respect to the cylinder's coordinates.
+    own: [T; OWN],
+    own_force: [T; OWN],
+    /// Force times the derivatives of the arc angle with respect to these coordinates, and times the second
+    /// derivatives of the penetration with respect to them and the beam angle.
+    turned: [T; OWN],
+    mixed: [T; OWN],
+    /// Derivatives of penetration and force with respect to the beam angle.
+    by_beam: T,
+    force_by_beam: T,
+    /// Force times the second derivative of the penetration with respect to the beam angle, and times the
+    /// derivative of the arc angle with respect to it.
+    beam: T,
+    turned_by_beam: T,
+    /// Stiffness of the law, derivative of the force with respect to a mode per slope of its shape, and `gamma`
+    /// times the damping of the law.
+    stiffness: T,
+    by_slope: T,
+    damping: T,
+}
+
+/// Sums over the contact points of neighbouring cylinders: own blocks of `K` or `K + gamma D`, and of `gamma D`
+/// alone.
+#[derive(Clone, Copy, Default)]
+#[repr(align(32))]
+struct OwnSums([[[Each; OWN]; OWN]; 2]);
 
 #[expect(
     clippy::multiple_inherent_impl,
@@ -64,36 +102,29 @@ impl Chain {
 
     fn add_tangent_within<const B: usize>(
         &self,
-        (surface, law): (&Surface<'_>, &Impact),
+        on: (&Surface<'_>, &Impact),
         state: &ChainState,
         gamma: f64,
-        (matrices, border): ((Option<&mut Bordered>, &mut Bordered), usize),
+        ((stiffness, matrix), border): ((Option<&mut Bordered>, &mut Bordered), usize),
     ) {
-        let tangent = Tangent::<B> {
-            chain: self,
-            surface,
-            law,
-            border,
-            corner: [[0.0; B]; B],
-        };
-        Arch::new().dispatch(AddTangent {
-            tangent,
-            gamma,
-            state,
-            matrices,
-        });
+        if let Some(stiffness) = stiffness {
+            let tangent = Tangent::<B, true>::new(self, on, gamma, border);
+            tangent.add(state, &mut [stiffness, matrix]);
+        } else {
+            let tangent = Tangent::<B, false>::new(self, on, gamma, border);
+            tangent.add(state, &mut [matrix]);
+        }
     }
 }
 
-/// Evaluation of the contact tangent of a chain, compiled for each set of instructions.
-struct AddTangent<'a, 'm, const B: usize> {
-    tangent: Tangent<'a, B>,
-    gamma: f64,
+/// Assembly of the contact tangent of a chain in the plane, compiled for each set of instructions.
+struct AddPlane<'a, 'm, const B: usize, const BOTH: bool> {
+    tangent: &'a mut Tangent<'m, B, BOTH>,
     state: &'a ChainState,
-    matrices: (Option<&'m mut Bordered>, &'m mut Bordered),
+    matrices: &'a mut [&'m mut Bordered],
 }
 
-impl<const B: usize> WithSimd for AddTangent<'_, '_, B> {
+impl<const B: usize, const BOTH: bool> WithSimd for AddPlane<'_, '_, B, BOTH> {
     type Output = ();
 
     #[expect(
@@ -101,37 +132,17 @@ impl<const B: usize> WithSimd for AddTangent<'_, '_, B> {
         reason = "compiled for each set of instructions"
     )]
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        let Self {
-            tangent,
-            gamma,
-            state,
-            matrices,
-        } = self;
-        let points = &state.points;
-        let plane = |j: usize| state.plane.get(j);
-        let space = |j: usize| state.poses[j];
-        match (tangent.chain.motion, matrices) {
-            (Motion::Plane, (None, matrix)) => tangent.add_sum(gamma, points, plane, matrix),
-            (Motion::Space, (None, matrix)) => tangent.add_sum(gamma, points, space, matrix),
-            (Motion::Plane, (Some(stiffness), matrix)) => {
-                tangent.add_both(gamma, points, plane, [stiffness, matrix]);
-            }
-            (Motion::Space, (Some(stiffness), matrix)) => {
-                tangent.add_both(gamma, points, space, [stiffness, matrix]);
-            }
-        }
+    fn with_simd<S: Simd>(self, simd: S) {
+        self.tangent.add_plane(simd, self.state, self.matrices);
     }
 }
 
 impl<const B: usize> Sums<B> {
-    const fn zero() -> Self {
-        Self {
-            own: [[0.0; OWN]; OWN],
-            right: [[0.0; B]; OWN],
-            bottom: [[0.0; B]; OWN],
-        }
-    }
+    const ZERO: Self = Self {
+        own: [[0.0; OWN]; OWN],
+        right: [[0.0; B]; OWN],
+        bottom: [[0.0; B]; OWN],
+    };
 
     /// Adds the rate-dependent part of the tangent, which is symmetric: its border rows are taken from its
     /// border columns.
@@ -149,209 +160,431 @@ impl<const B: usize> Sums<B> {
     }
 }
 
-impl<const B: usize> Tangent<'_, B> {
-    /// Adds `K + gamma D` to the matrix.
+impl<'a, const B: usize, const BOTH: bool> Tangent<'a, B, BOTH> {
+    const fn new(
+        chain: &'a Chain,
+        (surface, law): (&'a Surface<'a>, &'a Impact),
+        gamma: f64,
+        border: usize,
+    ) -> Self {
+        Self {
+            chain,
+            surface,
+            law,
+            gamma,
+            border,
+            corner: [[[0.0; B]; B]; 2],
+        }
+    }
+
+    /// Adds the tangent to the matrices, of which the last is that of `K + gamma D`.
+    fn add(mut self, state: &ChainState, matrices: &mut [&'a mut Bordered]) {
+        match self.chain.motion {
+            Motion::Plane => Arch::new().dispatch(AddPlane {
+                tangent: &mut self,
+                state,
+                matrices,
+            }),
+            Motion::Space => self.add_space(state, matrices),
+        }
+        self.add_corner(matrices);
+    }
+
+    /// Adds the tangent of cylinders in space, one after the other.
+    fn add_space(&mut self, state: &ChainState, matrices: &mut [&'a mut Bordered]) {
+        let points = &state.points;
+        let mut shapes = ModeShapes::ZERO;
+        for (k, j) in points.touching().enumerate() {
+            if points.loaded_points(k).next().is_none() {
+                continue;
+            }
+            let pose: &Pose = &state.poses[j];
+            let mut sums = [Sums::ZERO; 2];
+            for i in points.loaded_points(k) {
+                let touch = points.contact_point((k, i), self.law);
+                let measures = shapes.fill(self.surface, self.border, touch.angle);
+                let at = touch.motion::<2>(self.surface, pose, measures);
+                let (point, terms) = self.terms(&at);
+                let [own, damped] = &mut sums;
+                add_own::<_, 4>(&point, &terms, &mut own.own);
+                if BOTH {
+                    add_own_damping::<_, 4>(&terms, &mut damped.own);
+                }
+                self.add_border::<4>(&terms, &shapes, &mut sums);
+            }
+            self.add_sums::<4>(self.chain.first + j, &mut sums, matrices);
+        }
+    }
+
+    /// Adds the tangent of cylinders in the plane, several side by side.
     #[expect(
         clippy::inline_always,
         reason = "compiled for each set of instructions"
     )]
     #[inline(always)]
-    fn add_sum<const A: usize, P: InPlane<A>>(
-        mut self,
-        gamma: f64,
-        points: &Points,
-        pose: impl Fn(usize) -> P,
-        matrix: &mut Bordered,
+    fn add_plane<S: Simd>(
+        &mut self,
+        simd: S,
+        state: &ChainState,
+        matrices: &mut [&'a mut Bordered],
     ) {
-        for (k, j) in points.touching().enumerate() {
-            if points.loaded_points(k).next().is_none() {
+        let points = &state.points;
+        let touching = points.touching();
+        let mut shapes = [[ModeShapes::ZERO; POINTS]; WIDEST];
+        for (g, group) in points.groups().iter().enumerate() {
+            let first = g * WIDEST;
+            let lanes = WIDEST.min(touching.len() - first);
+            if group.total[..lanes].iter().all(|total| *total == 0.0) {
                 continue;
             }
-            let pose = pose(j);
-            let mut sums = Sums::zero();
-            for i in points.loaded_points(k) {
-                let touch = points.contact_point((k, i), self.surface, self.law);
-                let mut point = Derivatives::new((self.surface, self.border), &pose, &touch);
-                point.add_rates(gamma * touch.law.damping[0][0]);
-                self.add_point(&point, &touch, &pose, &mut sums);
+            let mut measures = [[[0.0; WIDEST]; POINTS]; 2];
+            if self.surface.bend.is_some() || self.surface.profile.is_some() {
+                for lane in 0..lanes {
+                    for i in points.loaded_points(first + lane) {
+                        let angle = group.angle[i][lane];
+                        let found = shapes[lane][i].fill(self.surface, self.border, angle);
+                        measures[0][i][lane] = found[0];
+                        measures[1][i][lane] = found[1];
+                    }
+                }
             }
-            self.add_sums::<A>(self.chain.first + j, &sums, matrix);
+            let mut terms = [Terms::<Each>::default(); POINTS];
+            let mut own = OwnSums::default();
+            self.fill(simd, (group, points), &measures, (&mut terms, &mut own));
+            for lane in 0..lanes {
+                if group.total[lane] == 0.0 {
+                    continue;
+                }
+                let mut sums = [Sums::ZERO; 2];
+                for (sums, own) in sums.iter_mut().zip(&own.0).take(1 + usize::from(BOTH)) {
+                    sums.own = own.map(|row| row.map(|each| each[lane]));
+                }
+                for i in points.loaded_points(first + lane) {
+                    self.add_border::<3>(&terms[i].lane(lane), &shapes[lane][i], &mut sums);
+                }
+                let block = self.chain.first + touching.start + first + lane;
+                self.add_sums::<3>(block, &mut sums, matrices);
+            }
         }
-        self.add_corner(matrix);
     }
 
-    /// Adds `K` to the first matrix and `K + gamma D` to the second.
+    /// Computes the terms of all contact points of neighbouring cylinders in the plane, and the sums of their own
+    /// blocks. `measures` are the second derivatives of the surface and the drifts at the points.
     #[expect(
         clippy::inline_always,
         reason = "compiled for each set of instructions"
     )]
     #[inline(always)]
-    fn add_both<const A: usize, P: InPlane<A>>(
-        mut self,
-        gamma: f64,
-        points: &Points,
-        pose: impl Fn(usize) -> P,
-        [stiffness, matrix]: [&mut Bordered; 2],
+    fn fill<S: Simd>(
+        &self,
+        simd: S,
+        (group, points): (&Group, &Points),
+        measures: &[[Each; POINTS]; 2],
+        (terms, own): (&mut [Terms<Each>; POINTS], &mut OwnSums),
     ) {
-        let mut corner = [[0.0; B]; B];
-        for (k, j) in points.touching().enumerate() {
-            if points.loaded_points(k).next().is_none() {
-                continue;
+        let zero = Vector::splat(simd, 0.0);
+        for k in 0..WIDEST / S::F64_LANES {
+            let [axis, sweep] = [
+                read_pair(simd, &group.axis, k),
+                read_pair(simd, &group.sweep, k),
+            ];
+            let [toward, velocity] = [
+                read_pair(simd, &group.toward, k),
+                read_pair(simd, &group.velocity, k),
+            ];
+            let mut sums = [[[zero; OWN]; OWN]; 2];
+            for i in 0..POINTS {
+                let (along, share) = points.point(i);
+                let law = self.law.response(
+                    [read(simd, &group.depth[i], k)],
+                    [read(simd, &group.rate[i], k)],
+                );
+                let at = [toward[0] + axis[0] * along, toward[1] + axis[1] * along];
+                let second = read(simd, &measures[0][i], k);
+                let slope = read(simd, &group.slope[i], k);
+                let outward = read_pair(simd, &group.outward[i], k);
+                let motion = PointMotion {
+                    along,
+                    velocity: [
+                        velocity[0] + sweep[0] * along,
+                        velocity[1] + sweep[1] * along,
+                    ],
+                    by_point: [-outward[0], -outward[1]],
+                    by_beam: read(simd, &group.by_beam[i], k),
+                    curvature: self.surface.curvature(at, [slope, second]),
+                    drift: read(simd, &measures[1][i], k),
+                    law: law.scaled(share),
+                    axis_by: [[-axis[1], axis[0]]],
+                    sweep_by: [[-sweep[1], sweep[0]]],
+                    axis_by_twice: [[[-axis[0], -axis[1]]]],
+                };
+                let (point, at) = self.terms(&motion);
+                add_own::<_, 3>(&point, &at, &mut sums[0]);
+                if BOTH {
+                    add_own_damping::<_, 3>(&at, &mut sums[1]);
+                }
+                at.store(&mut terms[i], k);
             }
-            let pose = pose(j);
-            let (mut sums, mut damped) = (Sums::zero(), Sums::zero());
-            for i in points.loaded_points(k) {
-                let touch = points.contact_point((k, i), self.surface, self.law);
-                let point = Derivatives::new((self.surface, self.border), &pose, &touch);
-                let by_rate = gamma * touch.law.damping[0][0];
-                add_damping::<A, B>(&point, by_rate, &mut damped, &mut corner[..self.border]);
-                self.add_point(&point, &touch, &pose, &mut sums);
+            for (to, from) in own.0.iter_mut().zip(sums) {
+                for (to, from) in to.iter_mut().zip(from) {
+                    for (to, from) in to.iter_mut().zip(from) {
+                        write(to, k, from);
+                    }
+                }
             }
-            let block = self.chain.first + j;
-            self.add_sums::<A>(block, &sums, stiffness);
-            sums.add_damping(&damped);
-            self.add_sums::<A>(block, &sums, matrix);
         }
-        self.add_corner(stiffness);
-        let rows = self.corner.as_flattened_mut().iter_mut();
-        for (entry, damped) in rows.zip(corner.as_flattened()) {
-            *entry += damped;
-        }
-        self.add_corner(matrix);
     }
 
-    fn add_corner(&self, matrix: &mut Bordered) {
-        for row in 0..self.border {
-            for column in 0..self.border {
-                matrix.add_corner(row, column, self.corner[row][column]);
-            }
-        }
-    }
-
-    /// Adds the sums over one cylinder's contact points to the cylinder's block and to the border of the
-    /// matrix.
-    fn add_sums<const A: usize>(&self, block: usize, sums: &Sums<B>, matrix: &mut Bordered) {
-        let rows: [usize; OWN] = std::array::from_fn(|k| {
-            if k < 2 {
-                k
-            } else {
-                self.chain.motion.width() - A + k - 2
-            }
-        });
-        let rows = &rows[..2 + A];
-        let (own, border) = (&sums.own, (&sums.right, &sums.bottom));
-        match matrix {
-            Bordered::Plane(matrix) => matrix.add_touching(block, rows, own, border, self.border),
-            Bordered::Space(matrix) => matrix.add_touching(block, rows, own, border, self.border),
-        }
-    }
-
-    /// Adds the tangent of one contact point to the sums of its cylinder and to the part within the border.
-    #[expect(clippy::inline_always, reason = "too much to be handed over by copies")]
+    /// Computes the terms of a contact point.
+    #[expect(
+        clippy::inline_always,
+        reason = "compiled for each set of instructions"
+    )]
     #[inline(always)]
-    fn add_point<const A: usize>(
-        &mut self,
-        point: &Derivatives<B>,
-        touch: &ContactPoint,
-        pose: &impl InPlane<A>,
-        sums: &mut Sums<B>,
-    ) {
-        add_own::<A, B>(point, touch, sums);
-        for a in 0..A {
-            for b in 0..A {
-                let bend = pose.axis_by_twice(a, b) * touch.along;
-                sums.own[2 + a][2 + b] += touch.law.force[0] * touch.by_point.dot(&bend);
+    fn terms<T: Real, const A: usize>(
+        &self,
+        at: &PointMotion<T, A>,
+    ) -> (PointTangent<T>, Terms<T>) {
+        let point = PointTangent::new(self.surface, at);
+        let ([force], curvature) = (at.law.force, &at.curvature);
+        let damping = at.law.damping[0][0] * self.gamma;
+        let (mut own_force, mut turned, mut mixed) = (point.own_force, point.angle, point.mixed);
+        let mut force_by_beam = point.force_by_beam;
+        for k in 0..2 + A {
+            if !BOTH {
+                own_force[k] = own_force[k] + damping * point.own[k];
             }
+            turned[k] = force * turned[k];
+            mixed[k] = force * mixed[k];
         }
-        self.add_border::<A>(point, touch, sums);
-    }
-
-    #[expect(clippy::inline_always, reason = "too much to be handed over by copies")]
-    #[inline(always)]
-    fn add_border<const A: usize>(
-        &mut self,
-        point: &Derivatives<B>,
-        touch: &ContactPoint,
-        sums: &mut Sums<B>,
-    ) {
-        let (curvature, force) = (&touch.curvature, touch.law.force[0]);
-        let (angle_by_point, angle_by_beam) = curvature.angle_by;
-        let Derivatives {
-            own,
+        if !BOTH {
+            force_by_beam = force_by_beam + damping * at.by_beam;
+        }
+        let terms = Terms {
+            own: point.own,
             own_force,
-            moved,
-            gradient,
-            force_by,
-            slope,
-        } = point;
-        for r in 0..2 + A {
-            let turned = force * angle_by_point.dot(&moved[r]);
+            turned,
+            mixed,
+            by_beam: at.by_beam,
+            force_by_beam,
+            beam: force * curvature.beam,
+            turned_by_beam: force * curvature.angle_by.1,
+            stiffness: at.law.stiffness[0][0],
+            by_slope: point.force_by_slope,
+            damping,
+        };
+        (point, terms)
+    }
+
+    fn add_corner(&self, matrices: &mut [&'a mut Bordered]) {
+        let [alone, damped] = &self.corner;
+        for (k, matrix) in matrices.iter_mut().enumerate() {
+            for row in 0..self.border {
+                for column in 0..self.border {
+                    let mut entry = alone[row][column];
+                    if k == 1 {
+                        entry += damped[row][column];
+                    }
+                    matrix.add_corner(row, column, entry);
+                }
+            }
+        }
+    }
+
+    /// Adds the sums over one cylinder's contact points, of the first `R` of its coordinates that move them, to
+    /// its block and to the border of the matrices.
+    #[expect(
+        clippy::inline_always,
+        reason = "compiled for each set of instructions"
+    )]
+    #[inline(always)]
+    fn add_sums<const R: usize>(
+        &self,
+        block: usize,
+        sums: &mut [Sums<B>; 2],
+        matrices: &mut [&'a mut Bordered],
+    ) {
+        let width = self.chain.motion.width();
+        let rows: [usize; R] =
+            std::array::from_fn(|k| if k < 2 { k } else { width - (R - 2) + k - 2 });
+        for (k, matrix) in matrices.iter_mut().enumerate() {
+            let [sums, damped] = &mut *sums;
+            if k == 1 {
+                sums.add_damping(damped);
+            }
+            let (own, border) = (&sums.own, (&sums.right, &sums.bottom));
+            match &mut **matrix {
+                Bordered::Plane(matrix) => {
+                    matrix.add_touching(block, &rows, own, border, self.border);
+                }
+                Bordered::Space(matrix) => {
+                    matrix.add_touching(block, &rows, own, border, self.border);
+                }
+            }
+        }
+    }
+
+    /// Adds a contact point to the sums of its cylinder in the rows and columns of the border, and to those within
+    /// the border.
+    #[expect(
+        clippy::inline_always,
+        reason = "compiled for each set of instructions"
+    )]
+    #[inline(always)]
+    fn add_border<const R: usize>(
+        &mut self,
+        at: &Terms<f64>,
+        shapes: &ModeShapes<B>,
+        [sums, damped]: &mut [Sums<B>; 2],
+    ) {
+        let c = at.damping;
+        let mut gradient = shapes.value;
+        gradient[0] = at.by_beam;
+        let mut force_by: [f64; B] = std::array::from_fn(|k| {
+            let by = gradient[k] * at.stiffness + shapes.slope[k] * at.by_slope;
+            if BOTH { by } else { by + c * gradient[k] }
+        });
+        force_by[0] = at.force_by_beam;
+        for r in 0..R {
             let (right, bottom) = (&mut sums.right[r], &mut sums.bottom[r]);
-            right[0] += own[r] * force_by[0] + force * curvature.mixed.dot(&moved[r]);
-            bottom[0] += own_force[r] * gradient[0] + force * curvature.mixed.dot(&moved[r]);
+            right[0] += at.own[r] * force_by[0] + at.mixed[r];
+            bottom[0] += at.own_force[r] * gradient[0] + at.mixed[r];
             // beyond the border everything is zero
             for k in 1..B {
-                right[k] += own[r] * force_by[k] + turned * slope[k];
-                bottom[k] += own_force[r] * gradient[k] + turned * slope[k];
+                right[k] += at.own[r] * force_by[k] + at.turned[r] * shapes.slope[k];
+                bottom[k] += at.own_force[r] * gradient[k] + at.turned[r] * shapes.slope[k];
             }
         }
-        for (k, row) in self.corner[..self.border].iter_mut().enumerate() {
-            for (entry, force_by) in row.iter_mut().zip(force_by) {
+        let [corner, corner_damped] = &mut self.corner;
+        for (k, row) in corner[..self.border].iter_mut().enumerate() {
+            for (entry, force_by) in row.iter_mut().zip(&force_by) {
                 *entry += gradient[k] * force_by;
             }
         }
-        self.corner[0][0] += force * curvature.beam;
+        corner[0][0] += at.beam;
         for k in 1..self.border {
-            let bend = force * angle_by_beam * slope[k];
-            self.corner[0][k] += bend;
-            self.corner[k][0] += bend;
+            let bend = at.turned_by_beam * shapes.slope[k];
+            corner[0][k] += bend;
+            corner[k][0] += bend;
+        }
+        if BOTH {
+            for r in 0..R {
+                let by = c * at.own[r];
+                for (sum, gradient) in damped.right[r].iter_mut().zip(&gradient) {
+                    *sum += by * gradient;
+                }
+            }
+            for (row, by) in corner_damped[..self.border].iter_mut().zip(&gradient) {
+                for (sum, gradient) in row.iter_mut().zip(&gradient) {
+                    *sum += c * by * gradient;
+                }
+            }
         }
     }
 }
 
-/// Adds a contact point's tangent to its cylinder's own block, except for the second derivatives of the
-/// cylinder's axis.
-#[expect(clippy::inline_always, reason = "too much to be handed over by copies")]
-#[inline(always)]
-fn add_own<const A: usize, const B: usize>(
-    point: &Derivatives<B>,
-    touch: &ContactPoint,
-    sums: &mut Sums<B>,
-) {
-    let bends = touch.curvature.point * touch.law.force[0];
-    for r in 0..2 + A {
-        let bent = bends * point.moved[r];
-        for c in 0..2 + A {
-            sums.own[r][c] += point.own[r] * point.own_force[c] + bent.dot(&point.moved[c]);
+#[expect(
+    clippy::inline_always,
+    reason = "compiled for each set of instructions"
+)]
+impl Terms<Each> {
+    /// Returns the terms of one lane.
+    #[inline(always)]
+    fn lane(&self, lane: usize) -> Terms<f64> {
+        let four = |of: &[Each; OWN]| of.each_ref().map(|each| each[lane]);
+        Terms {
+            own: four(&self.own),
+            own_force: four(&self.own_force),
+            turned: four(&self.turned),
+            mixed: four(&self.mixed),
+            by_beam: self.by_beam[lane],
+            force_by_beam: self.force_by_beam[lane],
+            beam: self.beam[lane],
+            turned_by_beam: self.turned_by_beam[lane],
+            stiffness: self.stiffness[lane],
+            by_slope: self.by_slope[lane],
+            damping: self.damping[lane],
         }
     }
 }
 
-/// Adds a contact point's rate-dependent tangent `c G G^T` to the sums of its cylinder (without the border's
-/// rows) and to the part of the matrix within the border.
+#[expect(
+    clippy::inline_always,
+    reason = "compiled for each set of instructions"
+)]
+impl<S: Simd> Terms<Vector<S>> {
+    /// Stores the terms in the `k`-th vector of lanes.
+    #[inline(always)]
+    fn store(self, to: &mut Terms<Each>, k: usize) {
+        let fours = [
+            (&mut to.own, self.own),
+            (&mut to.own_force, self.own_force),
+            (&mut to.turned, self.turned),
+            (&mut to.mixed, self.mixed),
+        ];
+        for (to, from) in fours {
+            for (to, from) in to.iter_mut().zip(from) {
+                write(to, k, from);
+            }
+        }
+        let ones = [
+            (&mut to.by_beam, self.by_beam),
+            (&mut to.force_by_beam, self.force_by_beam),
+            (&mut to.beam, self.beam),
+            (&mut to.turned_by_beam, self.turned_by_beam),
+            (&mut to.stiffness, self.stiffness),
+            (&mut to.by_slope, self.by_slope),
+            (&mut to.damping, self.damping),
+        ];
+        for (to, from) in ones {
+            write(to, k, from);
+        }
+    }
+}
+
+/// Reads two quantities of the `k`-th vector of lanes.
 #[expect(
     clippy::inline_always,
     reason = "compiled for each set of instructions"
 )]
 #[inline(always)]
-fn add_damping<const A: usize, const B: usize>(
-    point: &Derivatives<B>,
-    c: f64,
-    sums: &mut Sums<B>,
-    corner: &mut [[f64; B]],
+fn read_pair<S: Simd>(simd: S, [x, y]: &[Each; 2], k: usize) -> [Vector<S>; 2] {
+    [read(simd, x, k), read(simd, y, k)]
+}
+
+/// Adds a contact point's tangent to its cylinder's own block, of `R` coordinates.
+#[expect(
+    clippy::inline_always,
+    reason = "compiled for each set of instructions"
+)]
+#[inline(always)]
+fn add_own<T: Real, const R: usize>(
+    point: &PointTangent<T>,
+    at: &Terms<T>,
+    sums: &mut [[T; OWN]; OWN],
 ) {
-    for r in 0..2 + A {
-        let by = c * point.own[r];
-        for k in 0..2 + A {
-            sums.own[r][k] += by * point.own[k];
-        }
-        for (sum, gradient) in sums.right[r].iter_mut().zip(point.gradient) {
-            *sum += by * gradient;
+    for r in 0..R {
+        for c in 0..R {
+            let mut sum = sums[r][c] + (at.own[r] * at.own_force[c] + point.straight[r][c]);
+            if r > 1 && c > 1 {
+                sum = sum + point.bent[r][c];
+            }
+            sums[r][c] = sum;
         }
     }
-    for (row, by) in corner.iter_mut().zip(point.gradient) {
-        for (sum, gradient) in row.iter_mut().zip(point.gradient) {
-            *sum += c * by * gradient;
+}
+
+/// Adds a contact point's rate-dependent tangent `gamma c G G^T` to its cylinder's own block.
+#[expect(
+    clippy::inline_always,
+    reason = "compiled for each set of instructions"
+)]
+#[inline(always)]
+fn add_own_damping<T: Real, const R: usize>(at: &Terms<T>, sums: &mut [[T; OWN]; OWN]) {
+    for r in 0..R {
+        let by = at.damping * at.own[r];
+        for c in 0..R {
+            sums[r][c] = sums[r][c] + by * at.own[c];
         }
     }
 }

@@ -18,6 +18,7 @@ mod plane;
 pub(crate) mod points;
 pub(crate) mod state;
 pub(crate) mod tangent;
+pub(crate) mod unit_loads;
 
 pub use parts::{Chain, EndJoint, Joints};
 pub use state::ChainState;

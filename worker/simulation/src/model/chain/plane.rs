@@ -6,7 +6,7 @@
 use super::axial::pull_at;
 use super::parts::{Chain, Joints};
 use super::state::{ChainState, PlaneLoads};
-use crate::element::bushing::{Bushing, PLANE_COEFFICIENTS};
+use crate::element::bushing::{Bushing, LinkLoad};
 use crate::element::law::{ForceLaw, LawResponse};
 use crate::element::plane::{INDEPENDENT, PlaneJoint, PlaneTangent, Side};
 use crate::linear::{Blocks, MatrixBlock};
@@ -148,29 +148,6 @@ impl Chain {
         cylinders[n] = carried;
     }
 
-    /// Adds, per coordinate, the forces of the joints between cylinders per unit of each joint coefficient, in
-    /// the order of the law; does nothing for a chain in space.
-    pub(crate) fn add_plane_units(
-        &self,
-        law: &Bushing,
-        state: &ChainState,
-        units: &mut [[f64; PLANE_COEFFICIENTS]],
-    ) {
-        let Some(units) = units.get_mut(self.range()) else {
-            return;
-        };
-        for joint in 1..self.count.min(state.plane.len()) {
-            let at = self.plane_geometry(joint, state);
-            let forces = law.by_coefficients(at.deformation, at.rate);
-            for (k, force) in forces.into_iter().enumerate() {
-                let own = at.load(force).on_coordinates();
-                for (sum, own) in units[(joint - 1) * 3..].iter_mut().zip(own) {
-                    sum[k] += own;
-                }
-            }
-        }
-    }
-
     /// Adds the forces of the two end joints on cylinders in the plane; stores the joints' loads in `state`.
     pub(super) fn add_plane_ends(
         &self,
@@ -178,22 +155,33 @@ impl Chain {
         state: &mut ChainState,
         force: &mut [f64],
     ) {
-        let force = &mut force[self.range()];
-        for joint in [0, self.count] {
+        for (end, joint) in [0, self.count].into_iter().enumerate() {
             let Some(([i, j], law)) = self.link(joint, joints, state) else {
                 continue;
             };
             let load = law.load(&i, &j);
-            let (at, sign, torque) = if joint == 0 {
-                (0, 1.0, load.torque_i.z)
-            } else {
-                ((joint - 1) * 3, -1.0, load.torque_j.z)
-            };
-            force[at] += sign * load.force.x;
-            force[at + 1] += sign * load.force.y;
-            force[at + 2] += torque;
+            self.add_plane_end(end, &load, |at, value| force[at] += value);
             state.joints[joint] = load;
         }
+    }
+
+    /// Adds the generalised forces of the joint at the base (0) or at the head (1) on its cylinder, in the
+    /// plane.
+    pub(crate) fn add_plane_end(
+        &self,
+        end: usize,
+        load: &LinkLoad,
+        mut add: impl FnMut(usize, f64),
+    ) {
+        let (cylinder, sign, torque) = if end == 0 {
+            (0, 1.0, load.torque_i.z)
+        } else {
+            (self.count - 1, -1.0, load.torque_j.z)
+        };
+        let at = self.cylinder(cylinder).start;
+        add(at, sign * load.force.x);
+        add(at + 1, sign * load.force.y);
+        add(at + 2, torque);
     }
 
     /// Adds `K + gamma D` of the joints between cylinders to the last matrix and, if there are two, `K` alone
@@ -216,13 +204,21 @@ impl Chain {
             });
             return;
         }
+        let mut carried = [Carried::default(); 2];
         for joint in 1..self.count {
             let (at, answer) = self.plane_joint(joint, joints, state);
             let [stiffness, damping] = at.tangents(&answer);
+            let block = self.first + joint;
             if let Some(alone) = &mut alone {
-                add_joint(alone, self.first + joint, &stiffness);
+                carried[0].set_joint(alone, block, &stiffness);
             }
-            add_joint(matrix, self.first + joint, &stiffness.plus(gamma, &damping));
+            carried[1].set_joint(matrix, block, &stiffness.plus(gamma, &damping));
+        }
+        let last = self.first + self.count - 1;
+        for (carried, matrix) in carried.iter().zip([alone, Some(matrix)]) {
+            if let Some(matrix) = matrix {
+                *matrix.diagonal_mut(last) += carried.0;
+            }
         }
     }
 }
@@ -249,75 +245,94 @@ impl WithSimd for AddTangent<'_, '_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let (mut alone, matrix) = self.matrices;
-        let vectors = self.joints.len().div_ceil(S::F64_LANES);
+        let joints = self.joints;
+        let vectors = joints.len().div_ceil(S::F64_LANES);
         let [before, behind] = [0, 1].map(|first| self.poses.rods(simd, first, vectors));
+        let mut carried = [Carried::default(); 2];
         for k in 0..vectors {
             let joint = PlaneJoint::new(self.half, &behind.get(k), &before.get(k));
             let answer: LawResponse<Vector<S>, 3> =
                 self.law.response(joint.deformation, joint.rate);
             let [stiffness, damping] = joint.tangents(&answer);
-            let blocks = self
-                .joints
-                .clone()
-                .skip(k * S::F64_LANES)
-                .take(S::F64_LANES);
+            let first = joints.start + k * S::F64_LANES;
+            let blocks = first..joints.end.min(first + S::F64_LANES);
             if let Some(alone) = &mut alone {
-                add_joints(alone, blocks.clone(), &stiffness);
+                carried[0].set_joints(alone, blocks.clone(), &stiffness);
             }
-            add_joints(matrix, blocks, &stiffness.plus(self.gamma, &damping));
+            carried[1].set_joints(matrix, blocks, &stiffness.plus(self.gamma, &damping));
+        }
+        for (carried, matrix) in carried.iter().zip([alone, Some(matrix)]) {
+            if let Some(matrix) = matrix {
+                *matrix.diagonal_mut(joints.end - 1) += carried.0;
+            }
         }
     }
 }
 
-/// Adds the tangents of joints in SIMD lanes to the matrix, each as [`add_joint`] does.
+/// Tangent of the last joint in the rows and columns of the cylinder behind it, whose diagonal block the next
+/// joint completes: kept in registers.
+#[derive(Clone, Copy, Default)]
+struct Carried(MatrixBlock<3>);
+
 #[expect(
     clippy::inline_always,
     reason = "compiled for each set of instructions"
 )]
-#[inline(always)]
-fn add_joints<S: Simd>(
-    matrix: &mut Blocks<3>,
-    blocks: impl Iterator<Item = usize>,
-    tangent: &PlaneTangent<Vector<S>>,
-) {
-    let mut entries = [[[0.0; WIDEST]; INDEPENDENT]; INDEPENDENT];
-    for (to, from) in entries
-        .as_flattened_mut()
-        .iter_mut()
-        .zip(tangent.0.as_flattened())
-    {
-        S::as_mut_simd_f64s(to).0[0] = from.lanes();
+impl Carried {
+    /// Sets the couplings of joints in SIMD lanes, and adds to the diagonal blocks, each as
+    /// [`Self::set_joint`] does.
+    #[inline(always)]
+    fn set_joints<S: Simd>(
+        &mut self,
+        matrix: &mut Blocks<3>,
+        blocks: Range<usize>,
+        tangent: &PlaneTangent<Vector<S>>,
+    ) {
+        let mut entries = [[[0.0; WIDEST]; INDEPENDENT]; INDEPENDENT];
+        for (to, from) in entries
+            .as_flattened_mut()
+            .iter_mut()
+            .zip(tangent.0.as_flattened())
+        {
+            S::as_mut_simd_f64s(to).0[0] = from.lanes();
+        }
+        for (lane, block) in blocks.enumerate() {
+            let mut one = [[0.0; INDEPENDENT]; INDEPENDENT];
+            for (to, from) in one
+                .as_flattened_mut()
+                .iter_mut()
+                .zip(entries.as_flattened())
+            {
+                *to = from[lane];
+            }
+            self.set_joint(matrix, block, &PlaneTangent(one));
+        }
     }
-    for (lane, block) in blocks.enumerate() {
-        let one = entries.map(|row| row.map(|entry| entry[lane]));
-        add_joint(matrix, block, &PlaneTangent(one));
+
+    /// Sets the couplings of the joint between `block` (I) and the block before it (J), and completes the
+    /// diagonal block of J.
+    #[inline(always)]
+    fn set_joint(&mut self, matrix: &mut Blocks<3>, block: usize, tangent: &PlaneTangent<f64>) {
+        *matrix.diagonal_mut(block - 1) += self.0 + part(tangent, [Side::J, Side::J]);
+        let (upper, lower) = matrix.coupling_mut(block - 1);
+        *upper = part(tangent, [Side::J, Side::I]);
+        *lower = part(tangent, [Side::I, Side::J]);
+        self.0 = part(tangent, [Side::I, Side::I]);
     }
 }
 
-/// Adds the tangent of the joint between `block` (I) and the block before it (J) to the matrix.
+/// Returns the part of a joint's tangent in the rows and the columns of two cylinders.
 #[expect(
     clippy::inline_always,
     reason = "compiled for each set of instructions"
 )]
 #[inline(always)]
-fn add_joint(matrix: &mut Blocks<3>, block: usize, tangent: &PlaneTangent<f64>) {
-    add(matrix.diagonal_mut(block - 1), tangent, [Side::J, Side::J]);
-    let (upper, lower) = matrix.coupling_mut(block - 1);
-    add(upper, tangent, [Side::J, Side::I]);
-    add(lower, tangent, [Side::I, Side::J]);
-    add(matrix.diagonal_mut(block), tangent, [Side::I, Side::I]);
-}
-
-/// Adds the part of a joint's tangent in the rows and the columns of two cylinders to a block.
-#[expect(
-    clippy::inline_always,
-    reason = "compiled for each set of instructions"
-)]
-#[inline(always)]
-fn add(block: &mut MatrixBlock<3>, tangent: &PlaneTangent<f64>, [of, by]: [Side; 2]) {
+fn part(tangent: &PlaneTangent<f64>, [of, by]: [Side; 2]) -> MatrixBlock<3> {
+    let mut block = MatrixBlock::zeros();
     for column in 0..3 {
         for row in 0..3 {
-            block[(row, column)] += tangent.entry((of, row), (by, column));
+            block[(row, column)] = tangent.entry((of, row), (by, column));
         }
     }
+    block
 }

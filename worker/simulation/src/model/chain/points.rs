@@ -11,9 +11,9 @@ use super::parts::Chain;
 use crate::element::impact::{DerivativeVariable, Impact};
 use crate::element::law::{ForceLaw, LawResponse};
 use crate::math::real::WIDEST;
+use crate::math::spline::Splines;
 use crate::math::spline::sum::KnotForces;
-use crate::math::spline::{SplinePosition, Splines};
-use crate::model::contact::{Curvature, POINTS, Surface};
+use crate::model::contact::{POINTS, Surface};
 use crate::model::pose::{InPlane, PlanePoses, Pose};
 use nalgebra::Vector2;
 use pulp::{Arch, Simd, WithSimd};
@@ -55,18 +55,18 @@ pub(super) struct CylinderContact {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ContactPoint {
     /// Position of the point along the cylinder's axis, from the centre \[m\]; the field `velocity` holds the
-    /// point's velocity [m/s].
+    /// point's velocity [m/s], `toward` its position relative to the arc's centre \[m\].
     pub(super) along: f64,
-    pub(super) velocity: V2,
-    /// Arc angle of the point in the beam frame \[rad\]; 0 for a circular surface.
+    pub(super) velocity: [f64; 2],
+    pub(super) toward: [f64; 2],
+    /// Arc angle of the point in the beam frame \[rad\]; 0 for a circular surface. The field `slope` holds the
+    /// derivative of the surface's height with respect to it [m/rad].
     pub(super) angle: f64,
+    pub(super) slope: f64,
     /// First derivatives of the penetration with respect to the point's position; the field `by_beam` holds
-    /// that with respect to the beam angle, `curvature` the second derivatives.
-    pub(super) by_point: V2,
+    /// that with respect to the beam angle.
+    pub(super) by_point: [f64; 2],
     pub(super) by_beam: f64,
-    pub(super) curvature: Curvature,
-    /// Position of the point on the grid of the arc's mode shapes; meaningless without modes.
-    pub(super) on_grid: SplinePosition,
     /// Answer of the contact law, multiplied by the point's share of the contact coefficients.
     pub(super) law: LawResponse<f64, 1>,
 }
@@ -163,8 +163,14 @@ impl Points {
     }
 
     /// Returns the groups of the cylinders that may touch the arc.
-    fn groups(&self) -> &[Group] {
+    pub(super) fn groups(&self) -> &[Group] {
         &self.groups[..self.touching.len().div_ceil(WIDEST)]
+    }
+
+    /// Returns the position of contact point `i` along its cylinder's axis, from the centre \[m\], and its share of
+    /// the contact coefficients.
+    pub(super) const fn point(&self, i: usize) -> (f64, f64) {
+        (self.along[i], self.share[i])
     }
 
     /// Returns the group of the `k`-th cylinder that may touch the arc, and its lane.
@@ -176,17 +182,14 @@ impl Points {
     /// Replaces the contact forces of all points by their derivatives with respect to the coefficient `by` of
     /// the contact law, and sums these as the forces are.
     pub(crate) fn replace_forces_by_derivatives(&mut self, law: &Impact, by: DerivativeVariable) {
-        let local = self.height == Height::Local;
         let groups = self.touching.len().div_ceil(WIDEST);
-        for group in &mut self.groups[..groups] {
-            for i in 0..POINTS {
-                let at = group.depth[i].iter().zip(&group.rate[i]);
-                for (force, (&depth, &rate)) in group.force[i].iter_mut().zip(at) {
-                    *force = law.derivative(depth, rate, by);
-                }
-            }
-            group.sum_forces(pulp::Scalar, [&self.along, &self.share], local);
-        }
+        Arch::new().dispatch(Differentiate {
+            groups: &mut self.groups[..groups],
+            law,
+            by,
+            points: [&self.along, &self.share],
+            local: self.height == Height::Local,
+        });
     }
 
     /// Adds the contact forces to the generalised forces of cylinders in the plane, three numbers each, and
@@ -235,41 +238,27 @@ impl Points {
         (0..POINTS).filter(pressed)
     }
 
-    /// Returns contact point `i` of the `k`-th cylinder that may touch the arc; surface and law must be those
-    /// of the last evaluation.
+    /// Returns contact point `i` of the `k`-th cylinder that may touch the arc; the law must be that of the
+    /// last evaluation.
     #[expect(clippy::inline_always, reason = "too much to be handed over by copies")]
     #[inline(always)]
-    pub(super) fn contact_point(
-        &self,
-        (k, i): (usize, usize),
-        surface: &Surface<'_>,
-        law: &Impact,
-    ) -> ContactPoint {
+    pub(super) fn contact_point(&self, (k, i): (usize, usize), law: &Impact) -> ContactPoint {
         let (group, lane) = self.at(k);
-        let (along, share) = (self.along[i], self.share[i]);
-        let at = |of: &[Each; 2]| V2::new(of[0][lane], of[1][lane]);
-        let angle = group.angle[i][lane];
-        let on_grid = match &surface.bend {
-            Some(bend) => bend.shapes.place(angle),
-            None => SplinePosition::default(),
+        let along = self.along[i];
+        let pair = |of: &[Each; 2]| of.each_ref().map(|each| each[lane]);
+        let moved = |of: &[Each; 2], by: &[Each; 2]| {
+            std::array::from_fn(|d| of[d][lane] + by[d][lane] * along)
         };
-        let toward = at(&group.toward) + at(&group.axis) * along;
         let law = law.response([group.depth[i][lane]], [group.rate[i][lane]]);
         ContactPoint {
             along,
-            velocity: at(&group.velocity) + at(&group.sweep) * along,
-            angle,
-            by_point: -at(&group.outward[i]),
+            velocity: moved(&group.velocity, &group.sweep),
+            toward: moved(&group.toward, &group.axis),
+            angle: group.angle[i][lane],
+            slope: group.slope[i][lane],
+            by_point: pair(&group.outward[i]).map(|x| -x),
             by_beam: group.by_beam[i][lane],
-            curvature: surface.curvature(&toward, angle, &on_grid, group.slope[i][lane]),
-            on_grid,
-            law: LawResponse {
-                force: [law.force[0] * share],
-                stiffness: [[law.stiffness[0][0] * share]],
-                damping: [[law.damping[0][0] * share]],
-                energy: law.energy * share,
-                dissipated: law.dissipated * share,
-            },
+            law: law.scaled(self.share[i]),
         }
     }
 
@@ -338,6 +327,32 @@ impl Points {
     }
 }
 
+/// Replacement of the forces at all contact points by their derivatives, compiled for each set of instructions.
+struct Differentiate<'a> {
+    groups: &'a mut [Group],
+    law: &'a Impact,
+    by: DerivativeVariable,
+    /// Positions of the points along their cylinders and shares of the contact coefficients.
+    points: [&'a [f64; POINTS]; 2],
+    local: bool,
+}
+
+impl WithSimd for Differentiate<'_> {
+    type Output = ();
+
+    #[expect(
+        clippy::inline_always,
+        reason = "compiled for each set of instructions"
+    )]
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        for group in self.groups {
+            group.differentiate(simd, self.law, self.by);
+            group.sum_forces(simd, self.points, self.local);
+        }
+    }
+}
+
 /// Evaluation of geometry and law at all contact points, compiled for each set of instructions.
 struct Evaluate<'a, 's> {
     points: &'a mut Points,
@@ -398,6 +413,9 @@ mod tests {
     use crate::model::description::Arc;
     use crate::model::extension::profile::{Hollow, Profile};
 
+    use crate::model::chain::contact_point::ModeShapes;
+    use crate::model::contact::Curvature;
+
     /// Contact point in a test, with all its derivatives.
     struct Seen {
         depth: f64,
@@ -405,7 +423,7 @@ mod tests {
         angle: f64,
         by_point: V2,
         by_beam: f64,
-        curvature: Curvature,
+        curvature: Curvature<f64>,
     }
 
     /// Coordinates of the test configuration: cylinder centre (x, y) and angle, beam angle, modal
@@ -469,7 +487,13 @@ mod tests {
                     angle: group.angle[i][0],
                     by_point: V2::new(-x[0], -y[0]),
                     by_beam: group.by_beam[i][0],
-                    curvature: points.contact_point((0, i), &surface, &law).curvature,
+                    curvature: {
+                        let touch = points.contact_point((0, i), &law);
+                        let mut shapes = ModeShapes::<3>::ZERO;
+                        let border = surface.modes() + 1;
+                        let [second, _] = shapes.fill(&surface, border, touch.angle);
+                        surface.curvature(touch.toward, [touch.slope, second])
+                    },
                 }
             };
             for i in 0..POINTS {
@@ -502,18 +526,18 @@ mod tests {
             if k < 2 {
                 assert!((by.depth - touch.by_point[k]).abs() < 1e-8);
                 assert!(
-                    (by.by_point - curvature.point.column(k)).norm() < 1e-7,
+                    (by.by_point - V2::from(curvature.point[k])).norm() < 1e-7,
                     "{k} {} {}",
                     by.by_point,
-                    curvature.point
+                    V2::from(curvature.point[k])
                 );
                 assert!((by.by_beam - curvature.mixed[k]).abs() < 1e-7);
                 assert!(!turns || (by.angle - angle_by_point[k]).abs() < 1e-8);
             } else {
                 assert!((by.depth - touch.by_beam).abs() < 1e-8);
                 assert!(
-                    (by.by_point - curvature.mixed).norm() < 1e-7,
-                    "{} {}",
+                    (by.by_point - V2::from(curvature.mixed)).norm() < 1e-7,
+                    "{} {:?}",
                     by.by_point,
                     curvature.mixed
                 );

@@ -5,7 +5,7 @@ use crate::model::cycle::Cycle;
 use crate::model::description::Description;
 use crate::model::kinematics::Position;
 use crate::model::layout::Layout;
-use crate::model::strand::HeadResponse;
+use crate::model::parallel_ropes::HeadResponse;
 use std::fmt::Debug;
 
 /// Effect (optional physical phenomenon added to the model) with its parameter values.

@@ -7,7 +7,7 @@ use super::force::Force;
 use crate::drive::DriveState;
 use crate::linear::Bordered;
 use crate::math::elementary::tanh;
-use crate::model::instant::Instant;
+use crate::model::machine_state::MachineState;
 use std::fmt::Debug;
 
 /// Force law on one coordinate as a function of its value and rate; the coordinate is chosen in
@@ -26,34 +26,34 @@ pub(super) struct OnCoordinate<L> {
 }
 
 impl<L: LineForce> OnCoordinate<L> {
-    fn evaluate(&self, at: &Instant<'_>) -> LineForceValue {
+    fn evaluate(&self, at: &MachineState<'_>) -> LineForceValue {
         let i = self.coordinate;
         self.law.along(at.drive, at.q[i], at.v[i])
     }
 }
 
 impl<L: LineForce> Force for OnCoordinate<L> {
-    fn add(&self, at: &Instant<'_>, force: &mut [f64]) {
+    fn add(&self, at: &MachineState<'_>, force: &mut [f64]) {
         let along = self.evaluate(at);
         force[self.coordinate] += along.spring + along.non_conservative;
     }
 
-    fn add_tangent(&self, at: &Instant<'_>, gamma: f64, matrix: &mut Bordered) {
+    fn add_tangent(&self, at: &MachineState<'_>, gamma: f64, matrix: &mut Bordered) {
         let along = self.evaluate(at);
         let i = self.coordinate;
         matrix.add(i, i, -(along.by_place + gamma * along.by_rate));
     }
 
-    fn energy(&self, at: &Instant<'_>) -> f64 {
+    fn energy(&self, at: &MachineState<'_>) -> f64 {
         self.evaluate(at).energy
     }
 
-    fn potential(&self, at: &Instant<'_>) -> f64 {
+    fn potential(&self, at: &MachineState<'_>) -> f64 {
         let along = self.evaluate(at);
         along.energy - along.non_conservative * at.q[self.coordinate]
     }
 
-    fn lost(&self, at: &Instant<'_>) -> f64 {
+    fn lost(&self, at: &MachineState<'_>) -> f64 {
         -self.evaluate(at).non_conservative * at.v[self.coordinate]
     }
 }

@@ -6,6 +6,11 @@ pub trait Reading: Debug + Send + Sync {
     /// Modifies the readings of the four gauges at one sample \[Pa\].
     fn sample(&self, _at: &SampleState, _stress: &mut [f64; 4]) {}
 
+    /// Returns whether [`Self::sample`] uses more of the sample than the elapsed share of the revolution.
+    fn needs_loads(&self) -> bool {
+        true
+    }
+
     /// Modifies the readings of the four gauges over a whole revolution \[Pa\]; samples are `spacing` \[s\]
     /// apart and periodic.
     fn series(&self, _spacing: f64, _stress: &mut [Vec<f64>; 4]) {}

@@ -8,7 +8,7 @@ use super::reading::{Reading, SampleState};
 use crate::drive::DriveState;
 use crate::linear::Bordered;
 use crate::math::spline::Splines;
-use crate::model::instant::Instant;
+use crate::model::machine_state::MachineState;
 use std::sync::Arc;
 
 /// Set of all extensions that effects have added to a machine.
@@ -94,32 +94,32 @@ impl Extensions {
     }
 
     /// Adds the generalised forces of the effects to `force`.
-    pub(crate) fn add_forces(&self, at: &Instant<'_>, force: &mut [f64]) {
+    pub(crate) fn add_forces(&self, at: &MachineState<'_>, force: &mut [f64]) {
         for one in &self.forces {
             one.add(at, force);
         }
     }
 
     /// Adds the tangent of the generalised forces of the effects to `matrix`.
-    pub(crate) fn add_tangent(&self, at: &Instant<'_>, gamma: f64, matrix: &mut Bordered) {
+    pub(crate) fn add_tangent(&self, at: &MachineState<'_>, gamma: f64, matrix: &mut Bordered) {
         for one in &self.forces {
             one.add_tangent(at, gamma, matrix);
         }
     }
 
     /// Returns the energy stored by the forces of the effects \[J\].
-    pub(crate) fn energy(&self, at: &Instant<'_>) -> f64 {
+    pub(crate) fn energy(&self, at: &MachineState<'_>) -> f64 {
         self.forces.iter().map(|one| one.energy(at)).sum()
     }
 
     /// Returns the potential at rest of the effects' forces minus the energy that they store \[J\].
-    pub(crate) fn potential_beyond_energy(&self, at: &Instant<'_>) -> f64 {
+    pub(crate) fn potential_beyond_energy(&self, at: &MachineState<'_>) -> f64 {
         let beyond = |one: &Arc<dyn Force>| one.potential(at) - one.energy(at);
         self.forces.iter().map(beyond).sum()
     }
 
     /// Returns the power dissipated by the forces of the effects \[W\].
-    pub(crate) fn lost(&self, at: &Instant<'_>) -> f64 {
+    pub(crate) fn lost(&self, at: &MachineState<'_>) -> f64 {
         self.forces.iter().map(|one| one.lost(at)).sum()
     }
 
@@ -172,6 +172,12 @@ impl Extensions {
     /// Returns whether effects have added stages to the measuring chain.
     pub(crate) fn has_readings(&self) -> bool {
         !self.readings.is_empty()
+    }
+
+    /// Returns whether a stage of the measuring chain uses more than the stress and the elapsed share of the
+    /// revolution.
+    pub(crate) fn readings_need_loads(&self) -> bool {
+        self.readings.iter().any(|reading| reading.needs_loads())
     }
 
     /// Applies all stages of the measuring chain to the readings of one sample.

@@ -9,12 +9,11 @@ use super::differences::Difference;
 use super::linearized::Linearized;
 use super::perturbed::PerturbedModel;
 use super::plan::{ColumnMethod, DerivativePlan};
-use crate::integrator::method::Method;
 use crate::integrator::stepper::Stages;
 use crate::linear::Lanes;
 use crate::math::vector::add_scaled;
 use crate::model::description::RopeLaw;
-use crate::model::{Machine, RopeMachine, Scratch};
+use crate::model::{ForceBuffers, Machine, RopeMachine};
 use crate::observe::{Gradient, TorqueBy};
 use crate::run::{Observe, RunResult, RunSettings};
 use crate::system::{State, System};
@@ -85,7 +84,7 @@ struct Workspace {
     /// equilibrium.
     stages: Vec<Linearized>,
     bases: StagePredictor,
-    scratch: Scratch,
+    scratch: ForceBuffers,
     right: Vec<Lanes>,
     force: [Vec<f64>; 2],
     state: State,
@@ -103,17 +102,13 @@ impl<'a, 'o> SensitivityObserver<'a, 'o> {
         observer: &'o mut dyn Observe,
     ) -> Self {
         let subject = (machine, law);
-        let ways = plan.methods.iter().enumerate();
-        let mut active: Vec<_> = ways
-            .filter_map(|way| Active::new(subject, settings, way))
+        let methods = plan.methods.iter().enumerate();
+        let mut active: Vec<_> = methods
+            .filter_map(|method| Active::new(subject, settings, method))
             .collect();
         active.sort_by_key(Active::order);
-        let missing = match settings.method {
-            Method::RungeKutta(_) => None,
-            Method::Rosenbrock | Method::GeneralizedAlpha { .. } | Method::Bdf { .. } => {
-                Some(Unavailable::Method)
-            }
-        };
+        let is_runge_kutta = settings.method.tableau().is_some();
+        let missing = (!is_runge_kutta).then_some(Unavailable::Method);
         Self {
             own: PerturbedModel::new(machine, machine.ropes(law), settings.drive(machine)),
             active,
@@ -134,7 +129,7 @@ impl<'a, 'o> SensitivityObserver<'a, 'o> {
         let mut columns: Vec<_> = plan
             .methods
             .iter()
-            .map(|way| match way {
+            .map(|method| match method {
                 ColumnMethod::Missing(missing) => Derivative::Missing(*missing),
                 ColumnMethod::Coefficient(_)
                 | ColumnMethod::Difference { .. }
@@ -156,7 +151,7 @@ impl<'a, 'o> SensitivityObserver<'a, 'o> {
 impl Observe for SensitivityObserver<'_, '_> {
     fn begin(&mut self, system: &mut System<RopeMachine<'_>>, state: &State) {
         self.observer.begin(system, state);
-        if let Method::RungeKutta(tableau) = self.settings.method {
+        if let Some(tableau) = self.settings.method.tableau() {
             self.missing = self.start(system, state, tableau.stages()).err();
         }
     }

@@ -6,7 +6,9 @@ use super::super::perturbed::PerturbedModel;
 use super::{SensitivityObserver, Workspace};
 use crate::integrator::dense::Weights;
 use crate::linear::{LANES, Lanes};
-use crate::model::Scratch;
+use crate::math::vector::add_scaled;
+use crate::model::extension::{Extensions, SampleState};
+use crate::model::{ForceBuffers, Machine};
 use crate::system::State;
 
 /// Difference step for gauge readings along a column, stated as the displacement \[m\] or rotation \[rad\] of
@@ -34,11 +36,12 @@ impl SensitivityObserver<'_, '_> {
         }
         let read = self.own.shaft(scratch, state);
         let room = (&mut force[..], &mut *beside);
-        let asked =
-            !self.own.machine.extensions.has_readings() && !self.active.iter().all(Active::moves);
+        let asked = !self.active.iter().all(Active::moves);
         let by_state = gradient.as_mut().filter(|_| !self.blocks.is_empty());
         let asked = (asked, by_state);
-        let (own, known) = self.own.gradient(scratch, state, room, asked);
+        let (at_gauges, known) = self.own.gradient(scratch, state, room, asked);
+        let chain = MeasuringChain::new(self.own.machine, known);
+        let own = chain.read(at_gauges);
         for (curve, reading) in self.readings.iter_mut().zip(own) {
             curve.push(reading);
         }
@@ -47,6 +50,7 @@ impl SensitivityObserver<'_, '_> {
             state,
             ends: [from, to],
             own,
+            stress: at_gauges,
             shaft: read,
             known,
             turned: (&self.settings, index),
@@ -63,29 +67,26 @@ impl SensitivityObserver<'_, '_> {
             if let Some(ends) = ends.filter(|_| lane == 0) {
                 along_shaft = shaft(ends, &weights, layout.suspension(), torque);
             }
-            let mut sum = [0.0; 4];
-            let mut add = |share: f64, readings: &[f64; 4]| {
-                for (sum, reading) in sum.iter_mut().zip(readings) {
-                    *sum += share * reading;
-                }
-            };
+            let [mut by_stress, mut sum] = [[0.0; 4]; 2];
             match (&gradient, ends) {
                 (Some(gradient), Some(ends)) => {
                     if lane == 0 {
                         along = stress(ends, &weights, gradient, layout.beam());
                     }
-                    add(1.0, &along.map(|along| along.0[lane]));
+                    by_stress = along.map(|along| along.0[lane]);
                 }
                 (None, Some(ends)) => {
                     let room = (&mut *scratch, &mut force[..], &mut *beside);
                     let column = (ends, lane, &weights);
-                    add(1.0, &differenced(&mut self.own, column, state, room));
+                    sum = differenced(&mut self.own, column, state, room);
                 }
                 (_, None) => {}
             }
             let room = (&mut *scratch, &mut force[..], &mut *beside);
             let explicit = active.explicit(&sample, gradient.as_ref(), room);
-            add(1.0, &explicit);
+            add_scaled(&mut by_stress, 1.0, &explicit[0]);
+            add_scaled(&mut sum, 1.0, &explicit[1]);
+            add_scaled(&mut sum, 1.0, &chain.derivative(at_gauges, by_stress));
             let mut moved = active.explicit_shaft(&sample, (&mut *scratch, &mut *beside));
             if ends.is_some() {
                 for (moved, along) in moved.iter_mut().zip(along_shaft) {
@@ -100,13 +101,57 @@ impl SensitivityObserver<'_, '_> {
     }
 }
 
+/// Share of the stress by which it is displaced for the derivative of the measuring chain.
+const DISPLACED: f64 = 1e-3;
+
+/// Measuring chain of a machine at one sample, from stress at the gauges to readings.
+struct MeasuringChain<'a> {
+    extensions: &'a Extensions,
+    /// Sample that the stages may use; `None` without stages.
+    at: Option<SampleState>,
+}
+
+impl<'a> MeasuringChain<'a> {
+    fn new(machine: &'a Machine, at: Option<SampleState>) -> Self {
+        let extensions = &machine.extensions;
+        Self {
+            extensions,
+            at: at.filter(|_| extensions.has_readings()),
+        }
+    }
+
+    /// Returns the readings at a stress.
+    fn read(&self, mut stress: [f64; 4]) -> [f64; 4] {
+        if let Some(at) = &self.at {
+            self.extensions.read(at, &mut stress);
+        }
+        stress
+    }
+
+    /// Returns the derivatives of the readings from those of the stress, by central differences.
+    fn derivative(&self, stress: [f64; 4], by: [f64; 4]) -> [f64; 4] {
+        let largest = |x: &[f64; 4]| x.iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));
+        let size = largest(&by);
+        if self.at.is_none() || size == 0.0 {
+            return by;
+        }
+        let step = DISPLACED * largest(&stress).max(1.0) / size;
+        let [more, less] = [step, -step].map(|step| {
+            let mut moved = stress;
+            add_scaled(&mut moved, step, &by);
+            self.read(moved)
+        });
+        std::array::from_fn(|k| (more[k] - less[k]) * (0.5 / step))
+    }
+}
+
 /// Returns the derivatives of the gauge readings along a derivative column, by central differences of the
 /// state.
 fn differenced(
     own: &mut PerturbedModel<'_>,
     (ends, lane, weights): ([&Motion; 2], usize, &Weights),
     state: &State,
-    (scratch, force, beside): (&mut Scratch, &mut [f64], &mut State),
+    (scratch, force, beside): (&mut ForceBuffers, &mut [f64], &mut State),
 ) -> [f64; 4] {
     let size = ends[0].size(lane).max(ends[1].size(lane));
     if size == 0.0 {

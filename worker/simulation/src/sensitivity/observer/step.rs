@@ -4,13 +4,13 @@ use super::super::between::add_column;
 use super::super::block::{Block, StagePredictor};
 use super::super::column::Unavailable;
 use super::super::linearized::Linearized;
-use super::super::source::Source;
+use super::super::source::{PULLS, Source};
 use super::{SensitivityObserver, Workspace};
 use crate::integrator::dense::Weights;
 use crate::integrator::stepper::Stages;
 use crate::linear::{LANES, Lanes};
 use crate::model::layout::Motion;
-use crate::model::{RopeMachine, Scratch};
+use crate::model::{ForceBuffers, RopeMachine};
 use crate::observe::{Gradient, TorqueBy};
 use crate::system::{State, System};
 
@@ -51,9 +51,32 @@ impl SensitivityObserver<'_, '_> {
             } = active;
             let between = (&mut self.own, &mut sides[..], &*difference);
             let place = (&at.state, &at.units[..]);
-            source.right_hand_side(individual, place, between, [one, sum]);
-            for (right, sum) in right.iter_mut().zip(&*sum) {
-                right.0[lane] = *sum;
+            let added = match source {
+                Source::Joints(joints) => {
+                    joints.add_unit_forces(individual, place, (&mut *right, lane))
+                }
+                Source::Contact { .. }
+                | Source::Pieces(_)
+                | Source::Difference(..)
+                | Source::Nothing => false,
+            };
+            if !added {
+                source.right_hand_side(individual, place, between, [one, sum]);
+                for (right, sum) in right.iter_mut().zip(&*sum) {
+                    right.0[lane] = *sum;
+                }
+            }
+            // what the laws along the ropes remember depends on every unknown
+            if matches!(source, Source::Joints(_) | Source::Contact { .. }) {
+                let weights = difference.weights;
+                for (side, weight) in sides.iter_mut().zip(weights) {
+                    if side.has_memory() {
+                        side.residual(&mut individual.scratch, &at.state, (PULLS, false), one);
+                        for (right, one) in right.iter_mut().zip(&*one) {
+                            right.0[lane] += weight * one;
+                        }
+                    }
+                }
             }
         }
         std::mem::swap(&mut individual.scratch, &mut at.scratch);
@@ -153,10 +176,7 @@ impl SensitivityObserver<'_, '_> {
             Source::Contact { .. } | Source::Difference(..) | Source::Nothing => false,
         };
         let asked = self.active.iter().any(asked);
-        let units = match self.own.machine.layout.motion {
-            Motion::Plane if asked => n,
-            Motion::Plane | Motion::Space => 0,
-        };
+        let units = asked && self.own.machine.layout.motion == Motion::Plane;
         let kept = if blocks > CACHED_BLOCKS {
             stages - 1
         } else {
@@ -169,7 +189,7 @@ impl SensitivityObserver<'_, '_> {
                 .map(|_| Linearized::new(own, state, units))
                 .collect(),
             bases: StagePredictor::new(n),
-            scratch: Scratch::new(own.machine),
+            scratch: ForceBuffers::new(own.machine),
             right: vec![Lanes::default(); n],
             force: [zeros(), zeros()],
             state: state.clone(),

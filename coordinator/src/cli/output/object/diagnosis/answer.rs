@@ -3,7 +3,7 @@ use super::{
     effects::{EffectOutput, ForceOutput, RoundOutput, effect, force, rounds},
     gap::{GapOutput, LeftOutput, PredictionOutput, gap, left, predictions},
     localisation::{LocalisationOutput, localisation},
-    parameter_drift::{VaryingUnknownsOutput, wandered},
+    parameter_drift::{VaryingUnknownsOutput, varying_unknowns},
 };
 use discrepancy::{
     baseline::discretisation_check::Preflight,
@@ -174,6 +174,10 @@ impl NumericalOutput {
 struct StageOutput {
     stage: &'static str,
     simulations: u64,
+    /// Simulations that also computed derivatives.
+    with_derivatives: u64,
+    /// Experiments that an equal one had answered.
+    known: u64,
     failed: u64,
     batches: u64,
     /// Slot time of the simulations, summed (s).
@@ -214,7 +218,7 @@ pub(crate) fn object(subject: &DiagnosisInput<'_>) -> DiagnoseOutput {
         generic_force: diagnosis.force.as_ref().map(force),
         rounds: rounds(diagnosis),
         whereabouts: localisation(subject),
-        wander: wandered(subject),
+        wander: varying_unknowns(subject),
         detection_limits: diagnosis.detection_limits().map(bounded).collect(),
         nuisances: diagnosis.nuisances.clone(),
         absorbed: diagnosis.absorbed.clone(),
@@ -252,6 +256,8 @@ pub(crate) fn object(subject: &DiagnosisInput<'_>) -> DiagnoseOutput {
             .map(|(stage, account)| StageOutput {
                 stage: stage.name(),
                 simulations: account.experiments,
+                with_derivatives: account.with_derivatives,
+                known: account.known,
                 failed: account.failed,
                 batches: account.batches,
                 busy_s: subject.busy(*stage).as_secs_f64(),

@@ -39,7 +39,7 @@ struct PartOutput {
 
 /// Converts the unknowns whose values would have to vary to their JSON form, for the models before and after
 /// effects were added.
-pub(super) fn wandered(subject: &DiagnosisInput<'_>) -> VaryingUnknownsOutput {
+pub(super) fn varying_unknowns(subject: &DiagnosisInput<'_>) -> VaryingUnknownsOutput {
     let diagnosis = &subject.diagnosed.result.diagnosis;
     VaryingUnknownsOutput {
         before: wanders(subject, diagnosis.before.as_ref(), &diagnosis.drifts),

@@ -172,6 +172,8 @@ fn printed(diagnosis: Diagnosis) -> Value {
             Stage::Test,
             StageCost {
                 experiments: 40,
+                with_derivatives: 10,
+                known: 5,
                 failed: 2,
                 batches: 3,
             },

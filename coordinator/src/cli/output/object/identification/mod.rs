@@ -1,5 +1,5 @@
 //! JSON object of `horsehead identify`.
-use crate::kind;
+use crate::cli::output::model;
 use discrepancy::{
     diagnose::NuisanceEstimate,
     identify::{Determination, Direction, FurtherMeasurement, UnknownEstimate},
@@ -94,7 +94,7 @@ pub(crate) fn object(subject: &IdentificationInput<'_>, simulations: u64) -> Ide
         prediction: bands
             .map(|band| {
                 let name = case.conditions[band.condition].name.clone();
-                (name, kind::of(case).predicted(case, band))
+                (name, model::of(case).predicted(case, band))
             })
             .collect(),
         nuisances: identified.nuisances.clone(),

@@ -1,0 +1,283 @@
+//! Options of `horsehead life`, checked against the case: curve, mean stress, hours of the conditions, target.
+use clap::{Args, ValueEnum};
+use fatigue::{Assessment, Criterion, Curve, CurveError, MeanStress, categories};
+use protocol::{case::Case, pumping_unit::Machine};
+use std::path::Path;
+use support::Problem;
+
+/// Options of the assessment.
+#[derive(Clone, Debug, Args)]
+pub(super) struct LifeOptions {
+    /// Fatigue curve: a category of EN 1993-1-9 (en-36 to en-160), a class of DNV-RP-C203 in air (dnv-b1 to dnv-w3), or a
+    /// CSV file with the columns `cycles` and `range_mpa`. Class D belongs to stress on the surface at a weld.
+    #[arg(
+        long,
+        value_name = "NAME|FILE",
+        default_value = "dnv-d",
+        env = "HORSEHEAD_CURVE"
+    )]
+    curve: String,
+    /// Rule for the mean stress; as-welded steel has none.
+    #[arg(
+        long,
+        value_enum,
+        default_value = "none",
+        env = "HORSEHEAD_MEAN_STRESS"
+    )]
+    mean_stress: MeanStressChoice,
+    /// Tensile strength for Goodman and Gerber [MPa].
+    #[arg(long, value_name = "MPA", env = "HORSEHEAD_STRENGTH")]
+    strength: Option<f64>,
+    /// Exponent of Walker's rule; 0.5 is that of Smith, Watson and Topper.
+    #[arg(
+        long,
+        value_name = "G",
+        default_value_t = 0.5,
+        env = "HORSEHEAD_WALKER"
+    )]
+    walker: f64,
+    /// Stress whose cycles are counted.
+    #[arg(long, value_enum, default_value = "normal", env = "HORSEHEAD_STRESS")]
+    stress: StressChoice,
+    /// Hours a day under each condition, as 5rpm=16,4rpm=8 [default: 24 under that of the objective].
+    #[arg(
+        long,
+        value_name = "NAME=H,..",
+        value_delimiter = ',',
+        env = "HORSEHEAD_HOURS"
+    )]
+    hours: Vec<String>,
+    /// Factor on every stress, such as a partial factor of safety.
+    #[arg(
+        long,
+        value_name = "F",
+        default_value_t = 1.0,
+        env = "HORSEHEAD_FACTOR"
+    )]
+    factor: f64,
+    /// Life for which the load factor is given \[years\].
+    #[arg(
+        long,
+        value_name = "Y",
+        default_value_t = 20.0,
+        env = "HORSEHEAD_TARGET_YEARS"
+    )]
+    target_years: f64,
+    /// Yield stress; a larger equivalent stress is said [MPa].
+    #[arg(
+        long,
+        value_name = "MPA",
+        default_value_t = 235.0,
+        env = "HORSEHEAD_YIELD"
+    )]
+    r#yield: f64,
+}
+
+/// Rules for the mean stress.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum MeanStressChoice {
+    /// The mean does not count.
+    None,
+    /// Goodman; needs --strength.
+    Goodman,
+    /// Gerber; needs --strength.
+    Gerber,
+    /// Walker with the exponent --walker.
+    Walker,
+}
+
+/// Stresses whose cycles are counted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum StressChoice {
+    /// Normal stress on the worst plane perpendicular to the surface.
+    Normal,
+    /// Equivalent stress of von Mises, signed.
+    VonMises,
+}
+
+/// Operation under one condition.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Operation {
+    /// Index of the condition in the case.
+    pub(super) condition: usize,
+    pub(super) name: String,
+    pub(super) hours_per_day: f64,
+    pub(super) revolutions_per_day: f64,
+}
+
+/// Checked options of an assessment.
+#[derive(Clone, Debug)]
+pub(super) struct LifePlan {
+    pub(super) assessment: Assessment,
+    pub(super) criterion: Criterion,
+    pub(super) operations: Vec<Operation>,
+    pub(super) target_years: f64,
+    pub(super) yield_mpa: f64,
+}
+
+impl LifePlan {
+    /// Iterates over the indices of the conditions.
+    pub(super) fn conditions(&self) -> impl Iterator<Item = usize> {
+        self.operations.iter().map(|own| own.condition)
+    }
+}
+
+impl LifeOptions {
+    /// Checks the options against a case and its machine.
+    pub(super) fn plan(&self, case: &Case, machine: &Machine) -> anyhow::Result<LifePlan> {
+        let positive = [
+            ("--factor", self.factor),
+            ("--target-years", self.target_years),
+            ("--yield", self.r#yield),
+            ("--strength", self.strength.unwrap_or(1.0)),
+        ];
+        for (option, value) in positive {
+            if !(value.is_finite() && value > 0.0) {
+                return Err(problem(
+                    format!("{option} is {value}"),
+                    "give a positive number",
+                ));
+            }
+        }
+        if !(0.0..=1.0).contains(&self.walker) {
+            return Err(problem(
+                format!("--walker is {}", self.walker),
+                "give an exponent of 0 to 1; 0.5 is the rule of Smith, Watson and Topper",
+            ));
+        }
+        Ok(LifePlan {
+            assessment: Assessment {
+                curve: self.curve()?,
+                mean_stress: self.mean_stress()?,
+                factor: self.factor,
+            },
+            criterion: match self.stress {
+                StressChoice::Normal => Criterion::NormalStress,
+                StressChoice::VonMises => Criterion::SignedVonMises,
+            },
+            operations: self.operations(case, machine)?,
+            target_years: self.target_years,
+            yield_mpa: self.r#yield,
+        })
+    }
+
+    fn mean_stress(&self) -> anyhow::Result<MeanStress> {
+        let strength = || {
+            self.strength.ok_or_else(|| {
+                problem(
+                    "this rule for the mean stress needs the tensile strength".to_owned(),
+                    "add --strength MPA, such as --strength 470 for S355",
+                )
+            })
+        };
+        Ok(match self.mean_stress {
+            MeanStressChoice::None => MeanStress::Ignored,
+            MeanStressChoice::Goodman => MeanStress::Goodman {
+                strength: strength()?,
+            },
+            MeanStressChoice::Gerber => MeanStress::Gerber {
+                strength: strength()?,
+            },
+            MeanStressChoice::Walker => MeanStress::Walker {
+                exponent: self.walker,
+            },
+        })
+    }
+
+    fn curve(&self) -> anyhow::Result<Curve> {
+        let path = Path::new(&self.curve);
+        match Curve::named(&self.curve) {
+            Ok(curve) => Ok(curve),
+            Err(_) if path.is_file() => {
+                let points = points(path)?;
+                let shown = path.display();
+                Curve::table(&self.curve, &points)
+                    .map_err(|error| problem(format!("{shown}: {error}"), "mend the table"))
+            }
+            Err(error @ CurveError::Unknown { .. }) => Err(problem(
+                format!("--curve: {error}, and no such file"),
+                &format!(
+                    "there are: {}; or name a CSV file with cycles,range_mpa",
+                    categories().join(", ")
+                ),
+            )),
+            Err(error) => Err(error.into()),
+        }
+    }
+
+    fn operations(&self, case: &Case, machine: &Machine) -> anyhow::Result<Vec<Operation>> {
+        let operation = |condition: usize, hours_per_day: f64| Operation {
+            condition,
+            name: case.conditions[condition].name.clone(),
+            hours_per_day,
+            revolutions_per_day: 60.0 * hours_per_day * machine.conditions[condition].speed_rpm,
+        };
+        if self.hours.is_empty() {
+            return Ok(vec![operation(case.objective.condition, 24.0)]);
+        }
+        let mut operations: Vec<Operation> = Vec::new();
+        for word in &self.hours {
+            let typed = word
+                .split_once('=')
+                .and_then(|(name, hours)| Some((name.trim(), hours.trim().parse::<f64>().ok()?)));
+            let Some((name, hours)) = typed.filter(|(_, hours)| hours.is_finite() && *hours > 0.0)
+            else {
+                return Err(problem(
+                    format!("--hours: `{word}` is no condition with its hours a day"),
+                    "write NAME=HOURS, as in --hours 5rpm=16,4rpm=8",
+                ));
+            };
+            let condition = crate::cli::argument::individual::condition(case, Some(name))?;
+            if operations.iter().any(|own| own.condition == condition) {
+                return Err(problem(
+                    format!("--hours states {name} twice"),
+                    "state each condition once",
+                ));
+            }
+            operations.push(operation(condition, hours));
+        }
+        let total: f64 = operations.iter().map(|own| own.hours_per_day).sum();
+        if total > 24.0 + 1e-9 {
+            return Err(problem(
+                format!("--hours adds up to {total} hours a day"),
+                "a day has 24; hours that are left are standstill",
+            ));
+        }
+        Ok(operations)
+    }
+}
+
+fn problem(message: String, remedy: &str) -> anyhow::Error {
+    Problem {
+        message,
+        remedy: remedy.to_owned(),
+    }
+    .into()
+}
+
+/// Reads the points of a curve: number of cycles and stress range.
+fn points(path: &Path) -> anyhow::Result<Vec<[f64; 2]>> {
+    let shown = path.display();
+    let bad = |what: String| {
+        problem(
+            format!("{shown}: {what}"),
+            "write a CSV file with the header cycles,range_mpa and a point in each line",
+        )
+    };
+    let mut reader = csv::Reader::from_path(path).map_err(|error| bad(error.to_string()))?;
+    let header = reader.headers().map_err(|error| bad(error.to_string()))?;
+    let names: Vec<&str> = header.iter().map(str::trim).collect();
+    if names != ["cycles", "range_mpa"] {
+        return Err(bad(format!("its header is `{}`", names.join(","))));
+    }
+    let mut points = Vec::new();
+    for (line, row) in (2..).zip(reader.records()) {
+        let row = row.map_err(|error| bad(error.to_string()))?;
+        let number = |k: usize| row.get(k).and_then(|text| text.trim().parse::<f64>().ok());
+        let (Some(cycles), Some(range)) = (number(0), number(1)) else {
+            return Err(bad(format!("line {line} is no pair of numbers")));
+        };
+        points.push([cycles, range]);
+    }
+    Ok(points)
+}

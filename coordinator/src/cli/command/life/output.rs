@@ -1,0 +1,226 @@
+//! Tables and JSON object of `horsehead life`.
+use super::{
+    options::LifePlan,
+    spots::{AssessedVariant, HotSpot, Life},
+};
+use fatigue::{Criterion, MeanStress};
+use protocol::case::Case;
+use report::document::{Row, Table};
+use serde::Serialize;
+use serde_json::{Value, json};
+
+/// Output object of `horsehead life`.
+#[derive(Debug, Serialize)]
+pub(super) struct LifeOutput<'a> {
+    case: &'a str,
+    curve: &'a str,
+    source: &'a str,
+    /// Survival probability of the curve, null where its source states none.
+    survival: Option<f64>,
+    mean_stress: Value,
+    stress: &'static str,
+    factor: f64,
+    target_years: f64,
+    yield_mpa: f64,
+    conditions: Vec<Value>,
+    /// Hot spots of the last variant.
+    hot_spots: Vec<Value>,
+    /// Gauges 1 to 4 of the last variant.
+    gauges: Vec<Value>,
+    variants: Vec<Value>,
+    wall_s: f64,
+}
+
+/// Builds the output object.
+pub(super) fn object<'a>(
+    case: &'a Case,
+    plan: &'a LifePlan,
+    assessed: &[AssessedVariant],
+    wall_s: f64,
+) -> LifeOutput<'a> {
+    let condition = |own: &super::options::Operation| {
+        json!({
+            "name": own.name,
+            "hours_per_day": own.hours_per_day,
+            "revolutions_per_day": own.revolutions_per_day,
+        })
+    };
+    let variants: Vec<Value> = assessed.iter().map(|own| variant(plan, own)).collect();
+    let last = assessed.last();
+    let spots = last.map_or(&[][..], |own| &own.hot_spots);
+    let gauges = last.map_or(&[][..], |own| &own.gauges);
+    LifeOutput {
+        case: &case.name,
+        curve: &plan.assessment.curve.name,
+        source: &plan.assessment.curve.source,
+        survival: plan.assessment.curve.survival,
+        mean_stress: mean_stress(plan.assessment.mean_stress),
+        stress: match plan.criterion {
+            Criterion::NormalStress => "normal",
+            Criterion::SignedVonMises => "von_mises",
+        },
+        factor: plan.assessment.factor,
+        target_years: plan.target_years,
+        yield_mpa: plan.yield_mpa,
+        conditions: plan.operations.iter().map(condition).collect(),
+        hot_spots: spots.iter().map(|own| spot(plan, own)).collect(),
+        gauges: gauges.iter().map(|own| life(plan, own)).collect(),
+        variants,
+        wall_s,
+    }
+}
+
+fn mean_stress(rule: MeanStress) -> Value {
+    match rule {
+        MeanStress::Ignored => json!({"rule": "none"}),
+        MeanStress::Goodman { strength } => json!({"rule": "goodman", "strength_mpa": strength}),
+        MeanStress::Gerber { strength } => json!({"rule": "gerber", "strength_mpa": strength}),
+        MeanStress::Walker { exponent } => json!({"rule": "walker", "exponent": exponent}),
+    }
+}
+
+fn variant(plan: &LifePlan, own: &AssessedVariant) -> Value {
+    json!({
+        "name": own.name,
+        "hot_spots": own.hot_spots.iter().map(|own| spot(plan, own)).collect::<Vec<_>>(),
+        "gauges": own.gauges.iter().map(|own| life(plan, own)).collect::<Vec<_>>(),
+    })
+}
+
+fn spot(plan: &LifePlan, own: &HotSpot) -> Value {
+    let [x, y, z] = own.place_m;
+    let mut said = json!({
+        "x_m": x,
+        "y_m": y,
+        "z_m": z,
+        "near": own.bearing.map(|own| format!("pin {}", own.pin)),
+        "angle_deg": own.bearing.map(|own| own.angle_deg),
+        "distance_m": own.bearing.map(|own| own.distance_m),
+        "von_mises_mpa": own.von_mises_mpa,
+    });
+    if let (Some(said), Value::Object(more)) = (said.as_object_mut(), life(plan, &own.life)) {
+        said.extend(more);
+    }
+    said
+}
+
+fn life(plan: &LifePlan, own: &Life) -> Value {
+    // a life without end is no number of JSON
+    let finite = |years: f64| years.is_finite().then_some(years);
+    let conditions = plan.operations.iter().zip(&own.damage_per_revolution);
+    let conditions = conditions.zip(&own.shares).map(|((operation, damage), share)| {
+        json!({"condition": operation.name, "damage_per_revolution": damage, "share": share})
+    });
+    json!({
+        "life_years": {
+            "value": finite(own.years),
+            "ci95": own.ci95,
+            "over_fits": own.over_fits.map(|ends| ends.map(finite)),
+        },
+        "damage": conditions.collect::<Vec<_>>(),
+        "load_factor": own.load_factor,
+        "range_mpa": own.range_mpa,
+    })
+}
+
+/// Builds the tables: the hot spots of the last variant, the gauges, and the shortest lives of all variants.
+pub(super) fn tables(plan: &LifePlan, assessed: &[AssessedVariant]) -> Vec<Table> {
+    let mut tables = Vec::new();
+    let Some(last) = assessed.last() else {
+        return tables;
+    };
+    let head = [
+        "",
+        "near",
+        "angle deg",
+        "from the hole mm",
+        "z mm",
+        "range MPa",
+        "life years",
+        "spread",
+        "load factor",
+    ];
+    let ranged = |own: &Life| {
+        let ends = |[low, high]: [f64; 2]| format!("{} to {}", years(low), years(high));
+        let interval = own.ci95.map(|own| format!("95 %: {}", ends(own)));
+        let over_fits = || own.over_fits.map(|own| format!("fits: {}", ends(own)));
+        interval.or_else(over_fits).unwrap_or_default()
+    };
+    let factor = |own: &Life| {
+        own.load_factor
+            .map_or_else(String::new, |x| format!("{x:.2}"))
+    };
+    let spots = (1..).zip(&last.hot_spots).map(|(number, own)| {
+        let millimetres = |x: f64| format!("{:.0}", 1e3 * x);
+        let of_pin = |text: &dyn Fn(&super::place::Bearing) -> String| {
+            own.bearing.as_ref().map_or_else(String::new, text)
+        };
+        Row::new(
+            format!("hot spot {number}"),
+            [
+                of_pin(&|own| format!("pin {}", own.pin)),
+                of_pin(&|own| format!("{:.0}", own.angle_deg)),
+                of_pin(&|own| millimetres(own.distance_m)),
+                millimetres(own.place_m[2]),
+                format!("{:.1}", own.life.range_mpa),
+                years(own.life.years),
+                ranged(&own.life),
+                factor(&own.life),
+            ],
+        )
+    });
+    let title = format!(
+        "Life of the back head with the {} parameters, {}",
+        last.name, plan.assessment.curve.name
+    );
+    tables.push(Table::new(title, head, spots.collect()));
+    let head = ["", "range MPa", "life years", "spread", "load factor"];
+    let gauges = (1..).zip(&last.gauges).map(|(number, own)| {
+        let cells = [
+            format!("{:.1}", own.range_mpa),
+            years(own.years),
+            ranged(own),
+            factor(own),
+        ];
+        Row::new(format!("gauge {number}"), cells)
+    });
+    tables.push(Table::new("Life at the gauges", head, gauges.collect()));
+    if assessed.len() > 1 {
+        tables.push(by_parameters(assessed));
+    }
+    tables
+}
+
+/// Builds the table of the shortest life of each variant.
+fn by_parameters(assessed: &[AssessedVariant]) -> Table {
+    let rows = assessed.iter().map(|own| {
+        let shortest = own.hot_spots.first();
+        let cell = |text: &dyn Fn(&HotSpot) -> String| shortest.map_or_else(String::new, text);
+        let place = |own: &HotSpot| {
+            own.bearing.map_or_else(String::new, |own| {
+                format!("pin {}, {:.0} deg", own.pin, own.angle_deg)
+            })
+        };
+        let cells = [
+            cell(&place),
+            cell(&|own| format!("{:.1}", own.life.range_mpa)),
+            cell(&|own| years(own.life.years)),
+        ];
+        Row::new(own.name.clone(), cells)
+    });
+    let head = ["", "worst place", "range MPa", "life years"];
+    Table::new("Shortest life by parameters", head, rows.collect())
+}
+
+/// Returns a life in words.
+fn years(years: f64) -> String {
+    if years >= 1e4 {
+        return if years.is_finite() {
+            format!("{years:.1e}")
+        } else {
+            "no damage".to_owned()
+        };
+    }
+    let digits = usize::from(years < 10.0);
+    format!("{years:.digits$}")
+}
