@@ -327,6 +327,7 @@ fn calibration(run: &CalibrationRun, state: &RunState, compared: ComparedRuns<'_
         },
         identifiability: Vec::new(),
         rivals: Vec::new(),
+        assessments: Vec::new(),
         notes: [&run.manifest.notes[..], &state.notes].concat(),
     };
     report::running_calibration(&data)

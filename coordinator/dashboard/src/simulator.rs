@@ -8,7 +8,7 @@ use std::{
     thread,
     time::{Duration, Instant},
 };
-use study::{CompareRequest, PICTURES, StudyError};
+use study::{CompareRequest, NamedIndividual, PICTURES, StudyError};
 use tokio::sync::oneshot;
 
 /// Longest wait for the end of the worker when the dashboard ends.
@@ -259,7 +259,7 @@ fn wanted(case: &Case, number: usize, genes: &[f64]) -> Vec<CompareRequest> {
     wanted
         .map(|one| CompareRequest {
             first: number,
-            individuals: vec![(String::new(), genes.to_vec())],
+            individuals: vec![NamedIndividual::new("", genes.to_vec())],
             ..one
         })
         .collect()

@@ -2,6 +2,7 @@
 //!
 //! A curve is a polygon in logarithmic scales: between its corners `N S^m` is constant. Above the first corner the
 //! first slope continues, below the last corner the last one, or ranges do no damage (cut-off).
+use statrs::distribution::{ContinuousCDF as _, Normal};
 use thiserror::Error;
 
 /// Curve of allowable stress range against number of cycles.
@@ -157,6 +158,25 @@ impl Curve {
             pieces: vec![piece(*high, knee), piece(*low, 0.0)],
             cut_off: 0.0,
         }
+    }
+
+    /// Returns the curve that a share `survival` of all details survives, of which the logarithm of the number of cycles is
+    /// normally distributed; `None` where the source states no scatter.
+    #[must_use]
+    pub fn at_survival(self, survival: f64) -> Option<Self> {
+        let (scatter, own) = (self.scatter?, self.survival?);
+        let normal = Normal::standard();
+        let shift = scatter * (normal.inverse_cdf(own) - normal.inverse_cdf(survival));
+        let pieces = self.pieces.iter().map(|piece| Piece {
+            log_a: piece.log_a + shift,
+            ..*piece
+        });
+        Some(Self {
+            name: format!("{} at {survival} survival", self.name),
+            survival: Some(survival),
+            pieces: pieces.collect(),
+            ..self
+        })
     }
 
     /// Returns the curve through points of number of cycles and stress range \[MPa\]. Its first and last slope continue

@@ -1,6 +1,7 @@
 //! Plain data of a report, as handed over by the study, before any drawing.
 //!
 //! Every name of a quantity states its unit. Independent of files, clocks and workers.
+use crate::assessment::Assessment;
 use discrepancy::identify::{Determination, UnknownEstimate};
 use discrepancy::validation::gap::Gap;
 use journal::account::{JobCost, Presence};
@@ -160,6 +161,8 @@ pub struct Calibration {
     /// Best fit of every other family whose objective lies near the best one, best first: the record decides
     /// only weakly between them.
     pub rivals: Vec<RivalFit>,
+    /// Assessments that were made of the optimum.
+    pub assessments: Vec<Assessment>,
     /// Further notes and warnings, one sentence each.
     pub notes: Vec<String>,
 }

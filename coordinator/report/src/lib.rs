@@ -8,6 +8,7 @@
 //! model and its output formats; `table` and `chart` hold what several topics share; `model_report` is the trait
 //! for content specific to a kind of model, which `kind` selects; `section` has a file for each topic, with its tables and figures; `folder` and `write` write
 //! the files.
+mod assessment;
 pub mod chart;
 pub mod color;
 mod command_files;
@@ -31,6 +32,7 @@ pub mod table;
 pub mod words;
 mod write;
 
+pub use assessment::{Assessment, Topic};
 pub use data::{
     Calibration, ConditionResult, HistoryPoint, Individual, Origin, RivalFit, ScoredCurves,
     SimulationView, SingleRun, is_determined,

@@ -1,5 +1,5 @@
 //! Work of a calibration, its result as the journal states it, and the data of its report.
-use crate::{diagnosis::inputs, opened::Run};
+use crate::{assessment::assessments_of, diagnosis::inputs, opened::Run};
 use discrepancy::{
     diagnose::Inputs,
     identify::{LinearEstimate, UnknownEstimate},
@@ -17,7 +17,7 @@ use search::strategy::{
 };
 use study::{
     self, Calibrated, CalibrationResult, Compared, ComparedCurves, Evaluator, LogEntry,
-    ProgressView, RecordedCalibration, StageView, Stop, StudyError, Watch,
+    NamedIndividual, ProgressView, RecordedCalibration, StageView, Stop, StudyError, Watch,
 };
 
 /// Run of `horsehead calibrate`.
@@ -88,10 +88,10 @@ pub fn estimate_inputs(run: &CalibrationRun, best: &[f64]) -> anyhow::Result<Opt
 }
 
 /// Returns the parameter sets compared in the result tables, recommended and optimised, with their names.
-pub fn pair(case: &Case, best: &[f64]) -> Vec<(String, Vec<f64>)> {
+pub fn pair(case: &Case, best: &[f64]) -> Vec<NamedIndividual> {
     vec![
-        ("recommended".to_owned(), case.start()),
-        ("optimised".to_owned(), best.to_vec()),
+        NamedIndividual::new("recommended", case.start()),
+        NamedIndividual::new("optimised", best.to_vec()),
     ]
 }
 
@@ -173,6 +173,7 @@ pub fn report_data(
         conditions: found.compared.iter().filter_map(condition_result).collect(),
         rivals: rival_fits(run, &found.calibrated, identifiability)?,
         identifiability: identifiability.clone(),
+        assessments: assessments_of(&run.folder)?,
         notes,
     })
 }

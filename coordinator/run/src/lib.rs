@@ -1,10 +1,11 @@
 //! Runs: their folders and manifests, the sessions that work on them, and what readers take from them.
 //!
 //! [`opened`] opens the run of a folder with its [`manifest`] and [case](protocol::case::Case); [`session`] is a process that
-//! works on it, with workers and journal. `calibration`, `diagnosis`, `identification`, `orthogonal`, `sweep_file`
-//! and `scaling` are the kinds of run: their settings, their work on an evaluator, and their results, which are read from
+//! works on it, with workers and journal. `calibration`, `diagnosis`, `identification`, `assessment`, `orthogonal`,
+//! `sweep_file` and `scaling` are the kinds of run: their settings, their work on an evaluator, and their results, which are read from
 //! the journal. [`view`] is a run of any kind as a reader sees it, and [`tables`] exports it. Messages go to standard error;
 //! results are returned, and printed by others.
+pub mod assessment;
 pub mod calibration;
 pub mod command_line;
 pub mod diagnosis;

@@ -2,7 +2,7 @@
 //! result read from a journal.
 use super::{
     calibrate::{Calibrated, MIN_FAILED_EVALUATIONS, all_failed, calibrate, entry},
-    compare::{CompareRequest, Compared, ComparedCurves, PICTURES, compare},
+    compare::{CompareRequest, Compared, ComparedCurves, NamedIndividual, PICTURES, compare},
     entry::Entry,
     error::StudyError,
     evaluator::Evaluator,
@@ -76,7 +76,10 @@ pub async fn calibrate_case<E: Evaluator>(
     let first = first?;
     let best = |one: CompareRequest| CompareRequest {
         first: 1,
-        individuals: vec![(COMPARED[1].to_owned(), calibrated.best.genes.clone())],
+        individuals: vec![NamedIndividual::new(
+            COMPARED[1],
+            calibrated.best.genes.clone(),
+        )],
         ..one
     };
     let wanted: Vec<CompareRequest> = wanted.into_iter().map(best).collect();

@@ -5,10 +5,11 @@ use super::{
 };
 use journal::event::JobReason;
 use protocol::{
-    case::Case,
+    case::{Case, EffectSetting},
     id::JobId,
     job::{self, Column, Evaluation, Individual, Job, Reply, SimulateSpec},
 };
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// Individuals to score and simulate under one condition.
@@ -19,12 +20,42 @@ pub struct CompareRequest {
     /// Number of individuals already compared under this condition in the run, i.e. index of the first of
     /// these; determines the job numbers.
     pub first: usize,
-    /// Individuals to compare, each with its name and the values of its unknowns in declared units.
-    pub individuals: Vec<(String, Vec<f64>)>,
+    /// Individuals to compare.
+    pub individuals: Vec<NamedIndividual>,
     /// Number of motion snapshots recorded per simulation; 0 for none.
     pub frames: u32,
     /// Unknowns and effect parameters by which the curves are differentiated.
     pub columns: Vec<Column>,
+}
+
+/// Individual to compare, with its name.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct NamedIndividual {
+    /// Name of the individual in results and messages.
+    pub name: String,
+    /// Values of the unknowns in declared units, in the case's order.
+    pub genes: Vec<f64>,
+    /// Effects beside or in place of those of the case.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub effects: Vec<EffectSetting>,
+}
+
+impl NamedIndividual {
+    /// Creates an individual with the effects of the case.
+    pub fn new(name: impl Into<String>, genes: Vec<f64>) -> Self {
+        Self {
+            name: name.into(),
+            genes,
+            effects: Vec::new(),
+        }
+    }
+
+    fn under(&self, condition: usize) -> Individual {
+        Individual {
+            effects: self.effects.clone(),
+            ..Individual::new(condition, self.genes.clone())
+        }
+    }
 }
 
 /// Purpose of jobs that compare selected individuals.
@@ -76,25 +107,23 @@ pub async fn compare<E: Evaluator>(
     let (mut jobs, mut places) = (Vec::new(), Vec::new());
     for (group, one) in wanted.iter().enumerate() {
         let recorded = case.is_measured(one.condition);
-        for (position, (_, genes)) in one.individuals.iter().enumerate() {
+        for (position, own) in one.individuals.iter().enumerate() {
             let first = of_comparison(one.condition, one.first + position);
             if recorded {
-                let individual = Individual::new(one.condition, genes.clone());
                 let reply = Reply::Score {
                     with_residual: false,
                     whole: false,
                 };
-                let spec = SimulateSpec::new(individual, reply);
+                let spec = SimulateSpec::new(own.under(one.condition), reply);
                 jobs.push((JobId(first), Job::Simulate(spec)));
                 places.push((group, position));
             }
             let reply = Reply::Curves {
                 pictures: one.frames,
             };
-            let individual = Individual::new(one.condition, genes.clone());
             let spec = SimulateSpec {
                 columns: one.columns.clone(),
-                ..SimulateSpec::new(individual, reply)
+                ..SimulateSpec::new(own.under(one.condition), reply)
             };
             jobs.push((JobId(first + 1), Job::Simulate(spec)));
             places.push((group, position));
@@ -129,7 +158,7 @@ fn name(case: &Case, wanted: &[CompareRequest], (group, position): (usize, usize
     let condition = one.and_then(|one| case.conditions.get(one.condition));
     let individual = one.and_then(|one| one.individuals.get(position));
     let condition = condition.map_or("?", |condition| condition.name.as_str());
-    let individual = individual.map_or("?", |(name, _)| name.as_str());
+    let individual = individual.map_or("?", |individual| individual.name.as_str());
     format!("the {individual} individual at {condition}")
 }
 
@@ -139,13 +168,13 @@ fn collect(
     pairs: &mut BTreeMap<(usize, usize), Pair>,
 ) -> Result<Compared, StudyError> {
     let mut individuals = Vec::with_capacity(one.individuals.len());
-    for (position, (name, genes)) in one.individuals.iter().enumerate() {
+    for (position, own) in one.individuals.iter().enumerate() {
         let pair = pairs.remove(&(group, position)).unwrap_or_default();
         let id = JobId(of_comparison(one.condition, one.first + position) + 1);
         let drawn = pair.drawn.ok_or(StudyError::WrongKind { id })?;
         individuals.push(ComparedCurves {
-            name: name.clone(),
-            genes: genes.clone(),
+            name: own.name.clone(),
+            genes: own.genes.clone(),
             evaluation: pair.evaluation,
             drawn,
         });

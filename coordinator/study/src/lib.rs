@@ -39,7 +39,7 @@ pub use calibration::{
     CalibrationReader, CalibrationResult, RecordedCalibration, calibrate_case, read_calibration,
 };
 pub use column_division::{ColumnDivision, least_parts};
-pub use compare::{CompareRequest, Compared, ComparedCurves, PICTURES, compare};
+pub use compare::{CompareRequest, Compared, ComparedCurves, NamedIndividual, PICTURES, compare};
 pub use diagnose::diagnose_on;
 pub use dispatch::scheduler::{Completed, Snapshot};
 pub use entry::{DiagnosisResult, Entry, IdentificationStudy, StageCost};

@@ -1,7 +1,7 @@
 //! Consistency of measured records with their channels: a wrong unit, another zero of the angle, a sensor of
 //! reversed sign or exchanged columns cause a bad fit whose numbers do not reveal the reason.
 use super::{
-    compare::{CompareRequest, Compared, ComparedCurves, compare},
+    compare::{CompareRequest, Compared, ComparedCurves, NamedIndividual, compare},
     error::StudyError,
     evaluator::Evaluator,
     stop::Stop,
@@ -62,7 +62,7 @@ pub fn recommended(case: &Case, pictures: u32) -> Vec<CompareRequest> {
     let wanted = |condition| CompareRequest {
         condition,
         first: 0,
-        individuals: vec![("recommended".to_owned(), case.start())],
+        individuals: vec![NamedIndividual::new("recommended", case.start())],
         frames: if condition == calibrated { pictures } else { 0 },
         columns: Vec::new(),
     };

@@ -188,8 +188,8 @@ async fn a_comparison_keeps_its_order_whatever_arrives_first() {
     let case = case();
     let best: Vec<f64> = case.start().iter().map(|gene| 2.0 * gene).collect();
     let individuals = vec![
-        ("recommended".to_owned(), case.start()),
-        ("optimised".to_owned(), best),
+        NamedIndividual::new("recommended", case.start()),
+        NamedIndividual::new("optimised", best),
     ];
     let wanted = |condition| CompareRequest {
         condition,
@@ -206,11 +206,11 @@ async fn a_comparison_keeps_its_order_whatever_arrives_first() {
         assert_eq!(compared.len(), 2);
         for (condition, group) in compared.iter().enumerate() {
             assert_eq!(group.condition, condition);
-            for (curves, (name, genes)) in group.individuals.iter().zip(&individuals) {
-                assert_eq!(&curves.name, name);
+            for (curves, own) in group.individuals.iter().zip(&individuals) {
+                assert_eq!(curves.name, own.name);
                 assert_eq!(
                     Simulation::of(&curves.drawn).unwrap().gauge_mpa[0][0].to_bits(),
-                    genes[0].to_bits()
+                    own.genes[0].to_bits()
                 );
                 assert!(curves.evaluation.is_some());
             }
@@ -224,7 +224,7 @@ async fn comparison_fails(answer: fn(&Space, u64, &Individual) -> Outcome) -> St
     let case = case();
     let mut oracle = TestEvaluator::new(&case, 1, answer);
     let (_sender, mut stop) = watch::channel(false);
-    let individuals = vec![("recommended".to_owned(), case.start())];
+    let individuals = vec![NamedIndividual::new("recommended", case.start())];
     let wanted = [CompareRequest {
         condition: 0,
         first: 0,

@@ -12,7 +12,10 @@ fn years(spot: &Value) -> f64 {
 /// readings give by hand.
 #[test]
 fn hot_spots_lie_at_the_pins_and_gauges_live_by_their_readings() {
-    let object = json(&["life", "CASE", "--hours", "5rpm=20"]);
+    let scratch = tempfile::tempdir().unwrap();
+    let run = scratch.path().join("life");
+    let run = run.to_str().unwrap();
+    let object = json(&["life", "CASE", "--run", run, "--hours", "5rpm=20"]);
     let spots = object["hot_spots"].as_array().unwrap();
     assert_eq!(spots.len(), 10);
     let lives: Vec<f64> = spots.iter().map(years).collect();
@@ -50,7 +53,11 @@ fn hot_spots_lie_at_the_pins_and_gauges_live_by_their_readings() {
 /// Checks that damages of a mix add up, and that a factor on the stress is what the load factor says.
 #[test]
 fn damages_of_a_mix_add_up_and_the_load_factor_gives_the_target() {
-    let mix = json(&["life", "CASE", "--hours", "5rpm=12,4rpm=6"]);
+    let scratch = tempfile::tempdir().unwrap();
+    let run = scratch.path().join("life");
+    let hours = ["life", "CASE", "--run", run.to_str().unwrap()];
+    let hours = [&hours[..], &["--hours", "5rpm=12,4rpm=6"]].concat();
+    let mix = json(&hours);
     let gauge = &mix["gauges"][2];
     let damages = gauge["damage"].as_array().unwrap();
     let a_day = number(&damages[0]["damage_per_revolution"]) * 5.0 * 60.0 * 12.0
@@ -60,10 +67,21 @@ fn damages_of_a_mix_add_up_and_the_load_factor_gives_the_target() {
     assert!((shares - 1.0).abs() < 1e-12);
 
     let factor = format!("{}", number(&gauge["load_factor"]));
-    let hours = ["life", "CASE", "--hours", "5rpm=12,4rpm=6"];
+    // another question to the same run is answered from its journal
+    let size = || fs::metadata(run.join("journal.hhj")).unwrap().len();
+    let before = size();
     let scaled = json(&[&hours[..], &["--factor", &factor]].concat());
     let scaled = years(&scaled["gauges"][2]);
     assert!((scaled / 20.0 - 1.0).abs() < 1e-6, "{scaled}");
+    // what a session enters is shorter than any result
+    assert!(size() - before < 2000, "{before} {}", size());
+    let mean = json(&[&hours[..], &["--survival", "0.5"]].concat());
+    // two standard deviations of 0.2 in the decadic logarithm, to the three digits of the code's survival
+    let longer = years(&mean["gauges"][2]) / years(gauge);
+    assert!((longer.log10() / 0.4 - 1.0).abs() < 0.005, "{longer}");
+    for file in ["report.html", "life.csv", "result.json"] {
+        assert!(run.join(file).is_file(), "{file}");
+    }
 }
 
 /// Checks that a run compares its parameters with the recommended ones, and that a curve of one's own counts.
@@ -85,6 +103,10 @@ fn a_run_compares_before_and_after() {
     assert_eq!(names[1]["name"], "optimised");
     assert_eq!(own["hot_spots"], names[1]["hot_spots"]);
     let named = json(&["life", run]);
+    // the report of the run shows it from now on
+    json(&["report", run]);
+    let page = fs::read_to_string(scratch.path().join("run/report.html")).unwrap();
+    assert!(page.contains("id=\"life\"") && page.contains("hot spot 1"));
     let (own, named) = (years(&own["hot_spots"][0]), years(&named["hot_spots"][0]));
     assert!((own / named - 1.0).abs() < 0.01, "{own} {named}");
 }
@@ -121,6 +143,11 @@ fn options_that_cannot_be_meant_are_named_with_a_remedy() {
         (vec!["--hours", "6rpm=8"], vec!["6rpm", "5rpm, 4rpm"]),
         (vec!["--hours", "5rpm"], vec!["`5rpm`", "NAME=HOURS"]),
         (vec!["--hours", "5rpm=1,5rpm=2"], vec!["5rpm twice"]),
+        (vec!["--survival", "0.2"], vec!["--survival", "0.2"]),
+        (
+            vec!["--survival", "0.9", "--curve", "en-71"],
+            vec!["scatter", "EN 1993-1-9 category 71"],
+        ),
         (vec!["--factor", "0"], vec!["--factor", "positive"]),
         (vec!["--target-years", "nan"], vec!["--target-years"]),
     ] {

@@ -4,6 +4,7 @@
     clippy::unwrap_used,
     reason = "helpers of tests: a command that cannot be run or read has failed"
 )]
+mod balance;
 mod head_from_mesh;
 mod life;
 

@@ -27,7 +27,8 @@ pub use head::{Influence, ModalHead, StressRecovery};
 pub use head_loads::{HeadLoads, HeadSurface};
 pub use machine::{Machine, PumpingUnit, WorkingCondition};
 pub use parts::{
-    BackHead, Beam, Contact, Crank, FrontHead, Rod, RopeEnds, Ropes, Suspension, TurnSense,
+    BackHead, Beam, Contact, Counterweights, Crank, FrontHead, Rod, RopeEnds, Ropes, Suspension,
+    TurnSense,
 };
 pub use reduce_head::{
     ElementKind, HeadFields, HeadGauge, HeadMesh, HeadMode, ModeFamily, OmittedMode, REDUCE_HEAD,

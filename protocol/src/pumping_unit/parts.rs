@@ -54,6 +54,25 @@ pub struct Crank {
     pub counterweight_phase_deg: f64,
     /// Rated torque of the reducer at the crank shaft [N m]; `None` if not stated.
     pub reducer_rating_n_m: Option<f64>,
+    /// Weights that can be moved along the cranks; `None` if not stated. They act through the moment of each condition
+    /// alone.
+    pub counterweights: Option<Counterweights>,
+}
+
+/// Counterweights that can be moved along the cranks.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Counterweights {
+    /// Number of weights.
+    pub count: u32,
+    /// Mass of one weight \[kg\].
+    pub mass_kg: f64,
+    /// Moment of the cranks without weights about the shaft [N m].
+    pub crank_moment_n_m: f64,
+    /// Least distance of a weight's centre of mass from the shaft \[m\].
+    pub nearest_m: f64,
+    /// Largest distance of a weight's centre of mass from the shaft \[m\].
+    pub farthest_m: f64,
 }
 
 /// Connecting rods and crossbeam, one planar rigid body between crank pin and back rope.

@@ -58,7 +58,28 @@ fn bodies(case: &CaseFile) -> Vec<Number> {
         beam.gravity_height_moment_n_m,
     );
     let rating = crank.reducer_rating_n_m.unwrap_or(RATING.0);
-    vec![
+    let weights = crank.counterweights.iter().flat_map(|own| {
+        [
+            (
+                "crank.counterweights.count",
+                f64::from(own.count),
+                Range(1.0, 100.0, "weights"),
+            ),
+            ("crank.counterweights.mass_kg", own.mass_kg, MASS),
+            (
+                "crank.counterweights.crank_moment_n_m",
+                own.crank_moment_n_m,
+                Range(0.0, 1.0e6, "N m"),
+            ),
+            ("crank.counterweights.nearest_m", own.nearest_m, LENGTH),
+            (
+                "crank.counterweights.farthest_m",
+                own.farthest_m,
+                Range(own.nearest_m, LENGTH.1, "m, at least nearest_m"),
+            ),
+        ]
+    });
+    let numbers = vec![
         ("gravity_m_s2", case.gravity_m_s2, Range(0.0, 100.0, "m/s2")),
         ("beam.inertia_kg_m2", beam.inertia_kg_m2, INERTIA),
         ("beam.gravity_moment_n_m", beam.gravity_moment_n_m, MOMENT),
@@ -79,7 +100,8 @@ fn bodies(case: &CaseFile) -> Vec<Number> {
         ("back_head.center_x_m", back.center_x_m, PLACE),
         ("back_head.center_y_m", back.center_y_m, PLACE),
         ("back_head.rope_anchor_deg", back.rope_anchor_deg, ANGLE),
-    ]
+    ];
+    numbers.into_iter().chain(weights).collect()
 }
 
 fn ropes(case: &CaseFile) -> Vec<Number> {

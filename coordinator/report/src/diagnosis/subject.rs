@@ -1,4 +1,5 @@
 //! Input data of a diagnosis report.
+use crate::assessment::Assessment;
 use crate::data::Origin;
 use discrepancy::diagnose::{Diagnosis, Estimate};
 use discrepancy::laboratory::Stage;
@@ -17,6 +18,8 @@ pub struct DiagnosisInput<'a> {
     pub diagnosed: &'a RecordedDiagnosis,
     /// Provenance of the diagnosis (run, program, digest).
     pub origin: Origin,
+    /// Assessments that were made of the answer.
+    pub assessments: Vec<Assessment>,
     /// Wall time of the diagnosis, over all sessions (s).
     pub wall_s: f64,
 }

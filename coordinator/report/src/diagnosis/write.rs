@@ -3,14 +3,19 @@ use super::section::SECTIONS;
 use super::subject::DiagnosisInput;
 use super::{csv, words};
 use crate::ReportError;
-use crate::document::Report;
+use crate::assessment::Assessment;
+use crate::document::{Report, Section};
 use crate::folder::{stream, write_report};
 use std::path::{Path, PathBuf};
 
 /// Builds the report of a diagnosis.
 pub fn report(subject: &DiagnosisInput<'_>) -> Report {
     let title = format!("Diagnosis of {}", subject.case.name);
-    let sections = SECTIONS.iter().map(|section| section(subject));
+    let mut sections: Vec<Section> = SECTIONS.iter().map(|section| section(subject)).collect();
+    // before the provenance
+    let assessed = subject.assessments.iter().map(Assessment::section);
+    let origin = sections.len() - 1;
+    sections.splice(origin..origin, assessed);
     Report {
         outcome: words::outcome(subject.diagnosis()),
         ..Report::new(title, &subject.origin.run, sections)

@@ -1,7 +1,8 @@
 //! Figure type of a report.
+use serde::{Deserialize, Serialize};
 
 /// Rendered figure with its name and caption.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Figure {
     /// Stem of the figure's file name, unique in a report.
     pub name: String,

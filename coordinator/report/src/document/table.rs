@@ -1,8 +1,9 @@
 //! Table model, independent of the output format.
 use protocol::case::Unknown;
+use serde::{Deserialize, Serialize};
 
 /// Table with a title, column heads, rows and notes.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Table {
     /// Title of the table.
     pub title: String,
@@ -15,7 +16,7 @@ pub struct Table {
 }
 
 /// Row of a table.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Row {
     /// Subheading of the rows that follow.
     Group(String),
@@ -24,7 +25,7 @@ pub enum Row {
 }
 
 /// Label of a row.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Label {
     /// Label in plain text.
     Text(String),

@@ -3,10 +3,8 @@
 use crate::chart::canvas::{Canvas, Pen, TextStyle, WIDTH, render};
 use crate::color::{AXIS, Color, GREY, GUIDE, INK, STRENGTH, VERMILLION};
 use crate::document::Figure;
-use crate::folder::{ReportError, svg_name, write};
 use crate::number::fixed;
 use protocol::pumping_unit::{HeadGauge, HeadSurface};
-use std::path::{Path, PathBuf};
 
 /// Upper ends of the classes of life that have a colour of their own \[years\]; the last class has none.
 const CLASSES: [f64; 7] = [1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0];
@@ -82,7 +80,7 @@ fn color(years: f64) -> Color {
 }
 
 /// Draws the head and its pins, coloured by life.
-fn head_life(picture: &HeadLifePicture<'_>) -> Figure {
+fn colored_head(picture: &HeadLifePicture<'_>) -> Figure {
     let ends = |axis: usize| {
         let along = picture.surface.places_m.iter().map(|place| place[axis]);
         along.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {
@@ -262,19 +260,9 @@ fn damage_by_crank(picture: &HeadLifePicture<'_>) -> Figure {
     }
 }
 
-/// Writes `head_life.svg` and `damage_by_crank.svg` into a folder, creating it if needed. Returns their paths.
-///
-/// # Errors
-/// [`ReportError`] when a file cannot be written.
-pub fn write_head_life(
-    folder: &Path,
-    picture: &HeadLifePicture<'_>,
-) -> Result<Vec<PathBuf>, ReportError> {
-    let figures = [head_life(picture), damage_by_crank(picture)];
-    let written = figures.iter();
-    written
-        .map(|figure| write(folder, &svg_name(&figure.name), &figure.svg))
-        .collect()
+/// Draws the head coloured by life, and the damage of the first hot spot over the crank angle.
+pub fn head_life(picture: &HeadLifePicture<'_>) -> Vec<Figure> {
+    vec![colored_head(picture), damage_by_crank(picture)]
 }
 
 #[cfg(test)]
@@ -302,7 +290,7 @@ mod tests {
             spots_m: &[[0.1, 0.05, 0.1]],
             sectors: &[("5rpm".to_owned(), vec![0.25, 0.75])],
         };
-        let figure = head_life(&picture);
+        let figure = colored_head(&picture);
         for years in [2.0, 50.0] {
             let fill = format!("polygon fill=\"{}\"", color(years));
             assert!(figure.svg.contains(&fill), "{years}");
@@ -318,6 +306,6 @@ mod tests {
             surface: &away,
             ..picture
         };
-        assert!(!head_life(&hidden).svg.contains("polygon"));
+        assert!(!colored_head(&hidden).svg.contains("polygon"));
     }
 }

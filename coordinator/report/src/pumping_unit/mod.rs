@@ -6,6 +6,7 @@ mod animation;
 mod card;
 mod check;
 mod contact;
+mod crank_balance;
 pub mod csv;
 mod drawing;
 mod head;
@@ -17,8 +18,9 @@ mod revolution;
 mod single;
 pub mod vtu;
 
+pub use crank_balance::{BalanceMap, CrankBalancePicture, CrankTorque, crank_balance};
 pub use head::{head_gauges, head_modes as head_mode_table, head_pair, head_statics};
-pub use head_life::{HeadLifePicture, SECTOR_DEG, write_head_life};
+pub use head_life::{HeadLifePicture, SECTOR_DEG, head_life};
 pub use head_modes::{HeadPicture, write_head_modes};
 pub use import::{imported_card, turns};
 pub use name::{integrator_name, mode_family};

@@ -107,6 +107,7 @@ fn machine() -> Machine {
             sense: TurnSense::Clockwise,
             counterweight_phase_deg: 0.0,
             reducer_rating_n_m: Some(37.0e3),
+            counterweights: None,
         },
         rod: Rod {
             length_m: 2.876,
@@ -543,6 +544,7 @@ pub(crate) fn calibration(evaluations: usize) -> Calibration {
     Calibration {
         identifiability: Vec::new(),
         rivals: Vec::new(),
+        assessments: Vec::new(),
         origin: origin(),
         recommended: Individual {
             id: None,

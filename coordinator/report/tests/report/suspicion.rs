@@ -56,6 +56,7 @@ impl SampleDiagnosis {
                 seed: Some(1),
                 ..Origin::default()
             },
+            assessments: Vec::new(),
             wall_s: 412.0,
         }
     }

@@ -1,6 +1,7 @@
 //! Arguments shared by several commands, one kind per file.
 pub(crate) mod case;
 pub(super) mod derivatives;
+pub(crate) mod hours;
 pub(crate) mod individual;
 pub(super) mod individuals;
 pub(super) mod listening;

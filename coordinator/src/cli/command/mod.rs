@@ -5,6 +5,7 @@
 //! be set by environment variables, and its results are printed through [`terminal`].
 mod allow;
 mod ask_tell;
+mod balance;
 mod bench;
 mod calibrate;
 mod case;
@@ -70,6 +71,7 @@ const GROUPS: &[(&str, &[&str])] = &[
             "diagnose",
             "identify",
             "life",
+            "balance",
             "dashboard",
             "report",
             "export",
@@ -150,6 +152,7 @@ commands! {
     Diagnose: diagnose,
     Identify: identify,
     Life: life,
+    Balance: balance,
     Head: head,
     Record: record,
     Dashboard: dashboard,

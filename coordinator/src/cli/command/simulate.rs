@@ -16,7 +16,9 @@ use protocol::{case::Case, job::Verdict};
 use report::{self, Origin, SingleRun, table, words};
 use run::{command_line::command_line, hash, manifest, message, session::temporary::compare_once};
 use std::path::PathBuf;
-use study::{self, CompareRequest, Compared, ComparedCurves, EvaluatorError, PICTURES};
+use study::{
+    self, CompareRequest, Compared, ComparedCurves, EvaluatorError, NamedIndividual, PICTURES,
+};
 
 /// Simulate once: curves, verdict, counters.
 #[derive(Debug, Args)]
@@ -69,7 +71,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let wanted = CompareRequest {
         condition,
         first: 0,
-        individuals: vec![(arguments.individual.genes.clone(), genes)],
+        individuals: vec![NamedIndividual::new(&arguments.individual.genes, genes)],
         frames: pictures,
         columns,
     };

@@ -1,4 +1,5 @@
 //! Options of `horsehead life`, checked against the case: curve, mean stress, hours of the conditions, target.
+use crate::cli::argument::hours::{HoursChoice, Operation};
 use clap::{Args, ValueEnum};
 use fatigue::{Assessment, Criterion, Curve, CurveError, MeanStress, categories};
 use protocol::{case::Case, pumping_unit::Machine};
@@ -17,6 +18,9 @@ pub(super) struct LifeOptions {
         env = "HORSEHEAD_CURVE"
     )]
     curve: String,
+    /// Probability that a detail survives its life, for curves of which the scatter is known; that of the curve by default.
+    #[arg(long, value_name = "P", env = "HORSEHEAD_SURVIVAL")]
+    survival: Option<f64>,
     /// Rule for the mean stress; as-welded steel has none.
     #[arg(
         long,
@@ -39,14 +43,8 @@ pub(super) struct LifeOptions {
     /// Stress whose cycles are counted.
     #[arg(long, value_enum, default_value = "normal", env = "HORSEHEAD_STRESS")]
     stress: StressChoice,
-    /// Hours a day under each condition, as 5rpm=16,4rpm=8 [default: 24 under that of the objective].
-    #[arg(
-        long,
-        value_name = "NAME=H,..",
-        value_delimiter = ',',
-        env = "HORSEHEAD_HOURS"
-    )]
-    hours: Vec<String>,
+    #[command(flatten)]
+    hours: HoursChoice,
     /// Factor on every stress, such as a partial factor of safety.
     #[arg(
         long,
@@ -93,16 +91,6 @@ enum StressChoice {
     Normal,
     /// Equivalent stress of von Mises, signed.
     VonMises,
-}
-
-/// Operation under one condition.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Operation {
-    /// Index of the condition in the case.
-    pub(super) condition: usize,
-    pub(super) name: String,
-    pub(super) hours_per_day: f64,
-    pub(super) revolutions_per_day: f64,
 }
 
 /// Checked options of an assessment.
@@ -155,7 +143,7 @@ impl LifeOptions {
                 StressChoice::Normal => Criterion::NormalStress,
                 StressChoice::VonMises => Criterion::SignedVonMises,
             },
-            operations: self.operations(case, machine)?,
+            operations: self.hours.operations(case, machine)?,
             target_years: self.target_years,
             yield_mpa: self.r#yield,
         })
@@ -185,6 +173,26 @@ impl LifeOptions {
     }
 
     fn curve(&self) -> anyhow::Result<Curve> {
+        let curve = self.stated_curve()?;
+        let Some(survival) = self.survival else {
+            return Ok(curve);
+        };
+        if !(0.5..1.0).contains(&survival) {
+            return Err(problem(
+                format!("--survival is {survival}"),
+                "give a probability from 0.5, that of the mean curve, to less than 1",
+            ));
+        }
+        let name = curve.name.clone();
+        curve.at_survival(survival).ok_or_else(|| {
+            problem(
+                format!("the scatter of {name} is not known, so that --survival cannot be met"),
+                "leave --survival out, or name a curve of DNV-RP-C203",
+            )
+        })
+    }
+
+    fn stated_curve(&self) -> anyhow::Result<Curve> {
         let path = Path::new(&self.curve);
         match Curve::named(&self.curve) {
             Ok(curve) => Ok(curve),
@@ -203,47 +211,6 @@ impl LifeOptions {
             )),
             Err(error) => Err(error.into()),
         }
-    }
-
-    fn operations(&self, case: &Case, machine: &Machine) -> anyhow::Result<Vec<Operation>> {
-        let operation = |condition: usize, hours_per_day: f64| Operation {
-            condition,
-            name: case.conditions[condition].name.clone(),
-            hours_per_day,
-            revolutions_per_day: 60.0 * hours_per_day * machine.conditions[condition].speed_rpm,
-        };
-        if self.hours.is_empty() {
-            return Ok(vec![operation(case.objective.condition, 24.0)]);
-        }
-        let mut operations: Vec<Operation> = Vec::new();
-        for word in &self.hours {
-            let typed = word
-                .split_once('=')
-                .and_then(|(name, hours)| Some((name.trim(), hours.trim().parse::<f64>().ok()?)));
-            let Some((name, hours)) = typed.filter(|(_, hours)| hours.is_finite() && *hours > 0.0)
-            else {
-                return Err(problem(
-                    format!("--hours: `{word}` is no condition with its hours a day"),
-                    "write NAME=HOURS, as in --hours 5rpm=16,4rpm=8",
-                ));
-            };
-            let condition = crate::cli::argument::individual::condition(case, Some(name))?;
-            if operations.iter().any(|own| own.condition == condition) {
-                return Err(problem(
-                    format!("--hours states {name} twice"),
-                    "state each condition once",
-                ));
-            }
-            operations.push(operation(condition, hours));
-        }
-        let total: f64 = operations.iter().map(|own| own.hours_per_day).sum();
-        if total > 24.0 + 1e-9 {
-            return Err(problem(
-                format!("--hours adds up to {total} hours a day"),
-                "a day has 24; hours that are left are standstill",
-            ));
-        }
-        Ok(operations)
     }
 }
 

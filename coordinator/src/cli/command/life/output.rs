@@ -3,6 +3,7 @@ use super::{
     options::LifePlan,
     spots::{AssessedVariant, HotSpot, Life},
 };
+use crate::cli::argument::hours::Operation;
 use fatigue::{Criterion, MeanStress};
 use protocol::case::Case;
 use report::document::{Row, Table};
@@ -38,7 +39,7 @@ pub(super) fn object<'a>(
     assessed: &[AssessedVariant],
     wall_s: f64,
 ) -> LifeOutput<'a> {
-    let condition = |own: &super::options::Operation| {
+    let condition = |own: &Operation| {
         json!({
             "name": own.name,
             "hours_per_day": own.hours_per_day,
@@ -121,6 +122,103 @@ fn life(plan: &LifePlan, own: &Life) -> Value {
         "load_factor": own.load_factor,
         "range_mpa": own.range_mpa,
     })
+}
+
+/// States the shortest life, where it is, and its interval.
+pub(super) fn lead(plan: &LifePlan, assessed: &[AssessedVariant]) -> String {
+    let last = assessed.last();
+    let Some((last, spot)) = last.and_then(|own| Some((own, own.hot_spots.first()?))) else {
+        return "No point of the head is assessed.".to_owned();
+    };
+    let place = spot.bearing.map_or_else(String::new, |own| {
+        format!(
+            " beside pin {}, {:.0} deg from x, {:.0} mm from its hole,",
+            own.pin,
+            own.angle_deg,
+            1e3 * own.distance_m
+        )
+    });
+    let spread = match (spot.life.ci95, spot.life.over_fits) {
+        (Some([low, high]), _) => format!(" (95 %: {} to {})", years(low), years(high)),
+        (None, Some([low, high])) => {
+            format!(
+                " (over the fits of the search: {} to {})",
+                years(low),
+                years(high)
+            )
+        }
+        (None, None) => String::new(),
+    };
+    if spot.life.years.is_finite() {
+        format!(
+            "With the {} parameters the head cracks first{place} after {} years{spread}, by {}.",
+            last.name,
+            years(spot.life.years),
+            plan.assessment.curve.name
+        )
+    } else {
+        format!(
+            "With the {} parameters no stress of the head does damage, by {}.",
+            last.name, plan.assessment.curve.name
+        )
+    }
+}
+
+/// Writes every place of every variant as CSV: one line for each hot spot and gauge.
+///
+/// # Errors
+/// None that memory does not have.
+pub(super) fn csv(assessed: &[AssessedVariant]) -> anyhow::Result<String> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record([
+        "parameters",
+        "place",
+        "near",
+        "angle_deg",
+        "distance_m",
+        "x_m",
+        "y_m",
+        "z_m",
+        "range_mpa",
+        "life_years",
+        "life_low",
+        "life_high",
+        "load_factor",
+    ])?;
+    let optional = |value: Option<f64>| value.map_or_else(String::new, |x| x.to_string());
+    let of_life = |own: &Life| {
+        let [low, high] = own.ci95.map_or([None; 2], |ends| ends.map(Some));
+        let life = own.years.is_finite().then_some(own.years);
+        [
+            own.range_mpa.to_string(),
+            optional(life),
+            optional(low),
+            optional(high),
+            optional(own.load_factor),
+        ]
+    };
+    for variant in assessed {
+        for (number, own) in (1..).zip(&variant.hot_spots) {
+            let bearing = own.bearing.as_ref();
+            let mut cells = vec![
+                variant.name.clone(),
+                format!("hot spot {number}"),
+                bearing.map_or_else(String::new, |own| format!("pin {}", own.pin)),
+                optional(bearing.map(|own| own.angle_deg)),
+                optional(bearing.map(|own| own.distance_m)),
+            ];
+            cells.extend(own.place_m.map(|x| x.to_string()));
+            cells.extend(of_life(&own.life));
+            writer.write_record(cells)?;
+        }
+        for (number, own) in (1..).zip(&variant.gauges) {
+            let mut cells = vec![variant.name.clone(), format!("gauge {number}")];
+            cells.resize(8, String::new());
+            cells.extend(of_life(own));
+            writer.write_record(cells)?;
+        }
+    }
+    Ok(String::from_utf8(writer.into_inner()?)?)
 }
 
 /// Builds the tables: the hot spots of the last variant, the gauges, and the shortest lives of all variants.

@@ -191,6 +191,7 @@ fn printed(diagnosis: Diagnosis) -> Value {
         case: &case,
         diagnosed: &diagnosed,
         origin: Origin::default(),
+        assessments: Vec::new(),
         wall_s: 2.0,
     };
     let text = serde_json::to_string(&object(&subject)).unwrap();

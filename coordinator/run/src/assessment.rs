@@ -1,0 +1,445 @@
+//! Machines that an assessment compares, such as that of the life of a part, and their simulations: the machine of a case,
+//! a calibration or a diagnosis, the same without each of its effects, and those beside it by which a quantity has an
+//! interval.
+use crate::{
+    calibration::{self, CalibrationRun},
+    command_line::quote_path,
+    diagnosis::{DiagnosisRun, inputs},
+    folder::{GENES, RunFolder},
+    hash::short_hash,
+    manifest::{CALIBRATE, DIAGNOSE, Manifest, RunIdentity, StartPoint},
+    name::RunName,
+    opened::Run,
+};
+use case::{Loaded, Overrides, load_with_notes};
+use discrepancy::{diagnose::Inputs, identify::Neighbours, thresholds::Thresholds};
+use protocol::{
+    case::{Case, EffectSetting},
+    job::{Curves, Verdict},
+};
+use report::{Assessment, words};
+use search::strategy::family::rivals;
+use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
+use study::{CompareRequest, Compared, Evaluator, NamedIndividual, StageView, Stop, Watch};
+use support::Problem;
+
+/// Name of the file with an assessment, by which the report of the assessed run shows it.
+const ASSESSMENT: &str = "assessment.json";
+/// Kind of run in the manifest of an assessment of the life of a part.
+pub const LIFE: &str = "life";
+/// Kind of run in the manifest of an assessment of the crank's balance.
+pub const BALANCE: &str = "balance";
+
+/// Settings of an assessment: the machines that it simulates.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Machines {
+    /// Case or run that is assessed.
+    target: PathBuf,
+    /// Machines that are compared; the last one is assessed in full.
+    compared: Vec<NamedIndividual>,
+    /// Fits of other families that a calibration saw, best first.
+    others: Vec<Vec<f64>>,
+}
+
+/// Settings of an assessment of the life of a part.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LifeSettings(pub Machines);
+
+/// Settings of an assessment of the crank's balance.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BalanceSettings(pub Machines);
+
+impl RunIdentity for LifeSettings {
+    const KIND: &'static str = LIFE;
+    const SEEDED: bool = false;
+
+    fn command(&self, _: &str) -> String {
+        format!("{LIFE} {}", quote_path(&self.0.target))
+    }
+}
+
+impl RunIdentity for BalanceSettings {
+    const KIND: &'static str = BALANCE;
+    const SEEDED: bool = false;
+
+    fn command(&self, _: &str) -> String {
+        format!("{BALANCE} {}", quote_path(&self.0.target))
+    }
+}
+
+/// Case, calibration or diagnosis that is assessed.
+pub struct AssessmentTarget {
+    /// Folder of the case.
+    pub folder: PathBuf,
+    /// Case, with the effects that a diagnosis found.
+    pub case: Case,
+    machines: Machines,
+    /// Run that is assessed; `None` for a case.
+    run: Option<PathBuf>,
+    /// Case with its records, and parameters at which the unknowns are estimated; `None` where there are none, or where
+    /// the case has changed since the run.
+    estimate: Option<(Loaded, Vec<f64>)>,
+    measured: Option<PathBuf>,
+    /// Notes on the case and its records.
+    pub notes: Vec<String>,
+    synthetic: bool,
+}
+
+impl AssessmentTarget {
+    /// Reads a case folder, with the parameters of a gene file if one is given, or a finished calibration or diagnosis.
+    ///
+    /// # Errors
+    /// If the case, the gene file or the run cannot be read, or the run is of another kind or not finished.
+    pub fn read(target: &Path, genes: Option<&Path>) -> anyhow::Result<Self> {
+        let folder = RunFolder::new(target);
+        if !folder.is_begun() {
+            return Self::of_case(target, genes);
+        }
+        if genes.is_some() {
+            return Err(Problem {
+                message: "--genes is given with a run, whose parameters are its own".to_owned(),
+                remedy: "leave --genes out, or name the case folder instead of the run".to_owned(),
+            }
+            .into());
+        }
+        match folder.head()?.kind.as_str() {
+            CALIBRATE => Self::of_calibration(target),
+            DIAGNOSE => Self::of_diagnosis(target),
+            other => Err(Problem {
+                message: format!("{} holds a run of `horsehead {other}`", target.display()),
+                remedy: "name a case folder, or the folder of a calibration or a diagnosis"
+                    .to_owned(),
+            }
+            .into()),
+        }
+    }
+
+    fn of_case(target: &Path, genes: Option<&Path>) -> anyhow::Result<Self> {
+        let mut loaded = load_with_notes(target, &Overrides::default())?;
+        let start = genes.map(|file| StartPoint::read(file, &mut loaded));
+        let start = start.transpose()?;
+        let name = genes.map_or_else(
+            || "recommended".to_owned(),
+            |file| file.display().to_string(),
+        );
+        let values = start.as_ref();
+        let values = values.map_or_else(|| loaded.case.start(), |start| start.genes.clone());
+        Ok(Self {
+            folder: target.to_owned(),
+            case: loaded.case.clone(),
+            machines: Machines {
+                target: std::path::absolute(target)?,
+                compared: with_and_without(&loaded.case, &name, &values),
+                others: Vec::new(),
+            },
+            run: None,
+            notes: loaded.notes.iter().map(ToString::to_string).collect(),
+            synthetic: loaded.synthetic,
+            estimate: start.is_some().then_some((loaded, values)),
+            measured: None,
+        })
+    }
+
+    fn of_calibration(target: &Path) -> anyhow::Result<Self> {
+        let run = CalibrationRun::open(target)?;
+        let found = calibration::recorded(finished(&run)?)?.result.calibrated;
+        let best = found.best.genes.clone();
+        let space = run.manifest.space(&run.case)?;
+        let others = rivals(
+            &space,
+            (&best, found.best.fitness),
+            &found.descent_ends,
+            |_| true,
+        );
+        let mut compared = vec![NamedIndividual::new("recommended", run.case.start())];
+        compared.extend(with_and_without(&run.case, "optimised", &best));
+        Ok(Self {
+            machines: Machines {
+                target: std::path::absolute(target)?,
+                compared,
+                others: others
+                    .into_iter()
+                    .map(|own| own.end.genes.clone())
+                    .collect(),
+            },
+            estimate: run.loaded().ok().map(|loaded| (loaded, best)),
+            run: Some(target.to_owned()),
+            folder: run.manifest.case_folder.clone(),
+            measured: run.manifest.replaced_records().map(ToOwned::to_owned),
+            notes: Vec::new(),
+            synthetic: run.manifest.synthetic,
+            case: run.case,
+        })
+    }
+
+    fn of_diagnosis(target: &Path) -> anyhow::Result<Self> {
+        let run = DiagnosisRun::open(target)?;
+        let diagnosis = crate::diagnosis::recorded(finished(&run)?)?
+            .result
+            .diagnosis;
+        let mut loaded = run.loaded()?;
+        let of_case: Vec<String> = loaded.effects.iter().map(|own| own.id.clone()).collect();
+        let start = StartPoint::read(&run.folder.file(GENES), &mut loaded)?;
+        // notes on the gene file tell what the diagnosis found
+        let notes = run.manifest.notes.clone();
+        let effects = loaded.effects.iter().map(|own| own.id.clone());
+        let found: Vec<String> = effects.filter(|id| !of_case.contains(id)).collect();
+        let plain = |name: &str, genes: Vec<f64>| without(&found, name, genes);
+        let mut compared = vec![plain("recommended", loaded.case.start())];
+        let before = diagnosis.before.as_ref().filter(|_| !found.is_empty());
+        compared.extend(before.map(|before| {
+            let mut genes = start.genes.clone();
+            genes[..before.genes.len()].copy_from_slice(&before.genes);
+            plain("recalibrated", genes)
+        }));
+        compared.extend(with_and_without(&loaded.case, "diagnosed", &start.genes));
+        Ok(Self {
+            folder: run.manifest.case_folder.clone(),
+            case: loaded.case.clone(),
+            machines: Machines {
+                target: std::path::absolute(target)?,
+                compared,
+                others: Vec::new(),
+            },
+            run: Some(target.to_owned()),
+            estimate: Some((loaded, start.genes)),
+            measured: run.manifest.replaced_records().map(ToOwned::to_owned),
+            notes,
+            synthetic: run.manifest.synthetic,
+        })
+    }
+
+    /// Begins or resumes the run of an assessment: in `folder`, else inside the run that is assessed, else in a folder
+    /// below `runs/` that belongs to this case and these parameters.
+    ///
+    /// # Errors
+    /// As [`Run::begin`].
+    pub fn begin<S: RunIdentity>(
+        &self,
+        folder: Option<&Path>,
+        settings: impl FnOnce(Machines) -> S,
+    ) -> anyhow::Result<Run<S>> {
+        let path = match (folder, &self.run) {
+            (Some(folder), _) => folder.to_owned(),
+            (None, Some(run)) => run.join(S::KIND),
+            (None, None) => RunName {
+                case_folder: &self.folder,
+                case: &self.case,
+                what: S::KIND,
+                set: &[short_hash(&(&self.case, &self.machines))?],
+                measured: None,
+                seed: 0,
+            }
+            .path()?,
+        };
+        let manifest = self.manifest(settings(self.machines.clone()))?;
+        Run::begin(&path, manifest, self.case.clone())
+    }
+
+    /// Returns the machine that is assessed in full.
+    pub fn assessed(&self) -> Option<&NamedIndividual> {
+        self.machines.compared.last()
+    }
+
+    fn manifest<S: RunIdentity>(&self, settings: S) -> anyhow::Result<Manifest<S>> {
+        let measured = self.measured.as_ref().unwrap_or(&self.folder);
+        Ok(Manifest {
+            measured: measured.display().to_string(),
+            synthetic: self.synthetic,
+            notes: self.notes.clone(),
+            ..Manifest::new(&self.folder, 0, settings)?
+        })
+    }
+
+    /// Returns the inputs of the estimate of the unknowns at the assessed parameters; `None` where there are none.
+    fn estimate_inputs(&self) -> anyhow::Result<Option<Inputs>> {
+        let Some((loaded, genes)) = &self.estimate else {
+            return Ok(None);
+        };
+        let manifest = self.manifest(LifeSettings(self.machines.clone()))?;
+        let nothing = (Vec::new(), "");
+        let inputs = inputs(loaded, &manifest, &Thresholds::default(), nothing)?;
+        Ok(Some(Inputs {
+            start: Some(inputs.space.point(genes)),
+            ..inputs
+        }))
+    }
+}
+
+/// Checks that a run has written the parameters that it found.
+fn finished<S: RunIdentity>(run: &Run<S>) -> Result<&Run<S>, Problem> {
+    if run.folder.file(GENES).exists() {
+        return Ok(run);
+    }
+    Err(Problem {
+        message: format!("{} is not finished", run.folder.path().display()),
+        remedy: format!("finish it first:\n  {}", run.resume_command()),
+    })
+}
+
+/// Returns a machine without each of the case's effects, then with all.
+fn with_and_without(case: &Case, name: &str, genes: &[f64]) -> Vec<NamedIndividual> {
+    let each = case.effects.iter().map(|own| {
+        let name = format!("{name} without {}", own.id);
+        without(std::slice::from_ref(&own.id), &name, genes.to_vec())
+    });
+    each.chain([NamedIndividual::new(name, genes.to_vec())])
+        .collect()
+}
+
+/// Returns a machine without some of the case's effects: an effect of which no parameter is stated is absent.
+fn without(effects: &[String], name: &str, genes: Vec<f64>) -> NamedIndividual {
+    let absent = effects.iter().map(|id| EffectSetting::new(id, &[]));
+    NamedIndividual {
+        effects: absent.collect(),
+        ..NamedIndividual::new(name, genes)
+    }
+}
+
+/// Machine with its simulated curves.
+#[derive(Clone, Debug)]
+pub struct SimulatedMachine {
+    /// Name of the machine in results.
+    pub name: String,
+    /// Curves under each condition of the request.
+    pub curves: Vec<Curves>,
+}
+
+/// Simulations of an assessment.
+#[derive(Clone, Debug)]
+pub struct SimulatedMachines {
+    /// Machines that are compared; the last one is assessed in full.
+    pub compared: Vec<SimulatedMachine>,
+    /// Fits of other families.
+    pub others: Vec<SimulatedMachine>,
+    /// Machines beside the last one, by which a quantity has an interval; `None` where it has none.
+    pub beside: Option<(Neighbours, Vec<SimulatedMachine>)>,
+    /// Ratio of the misfit to the noise where the fit leaves so much that quantities have no interval.
+    pub noise_ratio: Option<f64>,
+}
+
+/// Simulates the machines of an assessment under several conditions.
+///
+/// # Errors
+/// If a simulation ends early or cannot be done, no evaluator is left, or the user stops.
+pub async fn simulate_machines<E: Evaluator>(
+    evaluator: &mut E,
+    target: &AssessmentTarget,
+    conditions: &[usize],
+    watch: &mut dyn Watch<StageView>,
+    stop: &mut Stop,
+) -> anyhow::Result<SimulatedMachines> {
+    let Machines {
+        compared, others, ..
+    } = &target.machines;
+    let mut individuals = compared.clone();
+    let count = individuals.len();
+    let further = others.iter().enumerate();
+    individuals.extend(
+        further
+            .map(|(k, genes)| NamedIndividual::new(format!("other fit {}", k + 1), genes.clone())),
+    );
+    let position = individuals.len();
+    let case = &target.case;
+    let mut compared = simulate(evaluator, case, conditions, (0, individuals), stop).await?;
+    let others = compared.split_off(count);
+    let mut simulated = SimulatedMachines {
+        compared,
+        others,
+        beside: None,
+        noise_ratio: None,
+    };
+    let Some(inputs) = target.estimate_inputs()? else {
+        return Ok(simulated);
+    };
+    let estimate = study::estimate_at_start_on(evaluator, &inputs, watch, stop).await?;
+    let Some(estimate) = estimate else {
+        return Ok(simulated);
+    };
+    let Some(neighbours) = estimate.neighbours else {
+        simulated.noise_ratio = Some(estimate.noise_ratio);
+        return Ok(simulated);
+    };
+    let individuals = (1..).zip(&neighbours.individuals);
+    let individuals: Vec<NamedIndividual> = individuals
+        .map(|(number, genes)| NamedIndividual::new(format!("neighbour {number}"), genes.clone()))
+        .collect();
+    let beside = simulate(evaluator, case, conditions, (position, individuals), stop).await?;
+    simulated.beside = Some((neighbours, beside));
+    Ok(simulated)
+}
+
+/// Simulates individuals under several conditions, the first of them in a position of its own among those of the run.
+async fn simulate<E: Evaluator>(
+    evaluator: &mut E,
+    case: &Case,
+    conditions: &[usize],
+    (first, individuals): (usize, Vec<NamedIndividual>),
+    stop: &mut Stop,
+) -> anyhow::Result<Vec<SimulatedMachine>> {
+    let request = |&condition: &usize| CompareRequest {
+        condition,
+        first,
+        individuals: individuals.clone(),
+        frames: 0,
+        columns: Vec::new(),
+    };
+    let wanted: Vec<CompareRequest> = conditions.iter().map(request).collect();
+    let groups = study::compare(evaluator, case, &wanted, stop).await?;
+    let machines = individuals.iter().enumerate();
+    machines
+        .map(|(k, own)| {
+            Ok(SimulatedMachine {
+                name: own.name.clone(),
+                curves: curves(case, &groups, k)?,
+            })
+        })
+        .collect()
+}
+
+/// Collects the curves of individual `k` under all conditions.
+///
+/// # Errors
+/// If a simulation ended early.
+pub fn curves(case: &Case, groups: &[Compared], k: usize) -> anyhow::Result<Vec<Curves>> {
+    let each = groups
+        .iter()
+        .filter_map(|group| Some((group, group.individuals.get(k)?)));
+    let complete = each.map(|(group, own)| {
+        if own.drawn.verdict == Verdict::Complete {
+            return Ok(own.drawn.clone());
+        }
+        let condition = &case.conditions[group.condition].name;
+        Err(Problem {
+            message: format!(
+                "the simulation of the {} parameters at {condition} {}",
+                own.name,
+                words::verdict(&own.drawn.verdict)
+            ),
+            remedy:
+                "an assessment needs a whole revolution; `horsehead simulate` shows how far it came"
+                    .to_owned(),
+        }
+        .into())
+    });
+    complete.collect()
+}
+
+/// Writes an assessment into its run folder, for the report of the assessed run.
+///
+/// # Errors
+/// As [`RunFolder::write_json`].
+pub fn write_assessment(folder: &RunFolder, assessment: &Assessment) -> anyhow::Result<()> {
+    folder.write_json(ASSESSMENT, assessment)
+}
+
+/// Reads the assessments that were made of a run.
+///
+/// # Errors
+/// If the file of one is damaged.
+pub(crate) fn assessments_of(run: &RunFolder) -> anyhow::Result<Vec<Assessment>> {
+    let folders = [LIFE, BALANCE].map(|kind| RunFolder::new(&run.file(kind)));
+    let made = folders.iter().filter(|own| own.file(ASSESSMENT).exists());
+    made.map(|own| own.read_json(ASSESSMENT)).collect()
+}

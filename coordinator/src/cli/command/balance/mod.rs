@@ -1,0 +1,286 @@
+//! `horsehead balance`: torque of the crank over a revolution against the reducer's rating, and the counterweight that
+//! lowers it.
+mod options;
+mod output;
+mod summary;
+mod torque;
+
+use crate::cli::{
+    argument::{case::case_folder, hours::Operation, output::OutputChoice, workers::WorkersChoice},
+    output::{problem::EXIT_CODES, progress::StageDisplay, terminal},
+};
+use anyhow::Context as _;
+use case::pumping_unit::quasi_static;
+use clap::Args;
+use options::{BalanceOptions, BalancePlan};
+use protocol::{
+    case::Case,
+    pumping_unit::{PumpingUnit, Sensor, Simulation},
+};
+use report::{Assessment, Topic, pumping_unit::crank_balance, text, write_report};
+use run::{
+    assessment::{
+        AssessmentTarget, BalanceSettings, SimulatedMachine, SimulatedMachines, simulate_machines,
+        write_assessment,
+    },
+    folder::RESULT,
+    message,
+    session::{Session, temporary::with_temporary_run},
+};
+use std::path::PathBuf;
+use study::CompareRequest;
+use summary::{AssessedCrank, states};
+use support::Problem;
+use torque::{Counterweight, PinAngle, Revolution};
+
+/// Compare the crank's torque with the reducer's rating, and find the counterweight that lowers it.
+#[derive(Debug, Args)]
+#[command(after_help = format!("\
+Examples:
+  horsehead balance runs/cyjs10-5-37hb-quick-seed1
+  horsehead balance cases/cyjs10-5-37hb --hours 5rpm=16,4rpm=8 --goal peak
+  horsehead balance cases/cyjs10-5-37hb --phase -10..10 --step 2520
+
+Net torque over one revolution, its peak, root mean square and power, and the moment and phase of
+the counterweight with which the root mean square, or the peak, is least. That optimum is
+simulated. Of a calibration, the recommended and the optimised parameters are compared; of a
+diagnosis, the machine with and without each effect that it found.
+{EXIT_CODES}"))]
+pub(super) struct Arguments {
+    /// Case folder, or the folder of a finished calibration or diagnosis.
+    #[arg(value_name = "CASE|RUN", value_parser = case_folder)]
+    target: PathBuf,
+    /// Gene file whose parameters are assessed, such as a run's `calibrated.toml`; the recommended ones by default.
+    #[arg(long, value_name = "FILE", env = "HORSEHEAD_GENES")]
+    genes: Option<PathBuf>,
+    #[command(flatten)]
+    options: BalanceOptions,
+    /// Folder of the assessment [default: `balance` in the folder of the run, or runs/CASE-balance-HASH-seed0].
+    #[arg(long, value_name = "DIR", env = "HORSEHEAD_RUN")]
+    run: Option<PathBuf>,
+    #[command(flatten)]
+    output: OutputChoice,
+    #[command(flatten)]
+    workers: WorkersChoice,
+}
+
+/// Simulations of an optimum by which the next one is sought, at most: where the motor slips, the counterweight changes
+/// the motion.
+const MOST_REPETITIONS: usize = 3;
+/// Relative change of the optimal moment below which it is not sought again.
+const SETTLED: f64 = 1e-3;
+
+/// Simulates the conditions, seeks the counterweight, simulates it, writes the report and prints the result.
+pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    let session = Session::begin();
+    let target = AssessmentTarget::read(&arguments.target, arguments.genes.as_deref())?;
+    message::print_notes(&target.notes);
+    let unit = PumpingUnit::of(target.case.clone()).map_err(|error| Problem {
+        message: format!("the balance is that of a pumping unit's crank: {error}"),
+        remedy: "name the case, or a run, of a pumping unit".to_owned(),
+    })?;
+    let plan = arguments.options.plan(&target.case, &unit.machine)?;
+    let conditions: Vec<usize> = plan.operations.iter().map(|own| own.condition).collect();
+    let run = target.begin(arguments.run.as_deref(), BalanceSettings)?;
+    let options = arguments.workers.session()?;
+    let simulated = session.work(&run, &options, async |dispatch, stop| {
+        let mut display = StageDisplay::new();
+        let simulated = simulate_machines(dispatch, &target, &conditions, &mut display, stop).await;
+        display.clear();
+        simulated
+    })?;
+    let pin = pin_angle(&unit)?;
+    let assessed = assess((&unit, &plan), pin, &simulated)?;
+    let present = assessed.last().context("no machine is compared")?;
+    let (optimum, revolutions) = optimum(
+        (&unit, &target, &plan),
+        pin,
+        &simulated,
+        options.local_workers,
+    )?;
+    let mut notes = output::notes(&target.case, &plan, present, &optimum);
+    notes.extend(simulated.noise_ratio.map(|ratio| {
+        format!(
+            "the numbers have no interval: the fit leaves {ratio:.1} times the noise, so that its numbers are not those of \
+             the machine; `horsehead diagnose` finds what the model lacks"
+        )
+    }));
+    let picture = output::picture(
+        (&target.case, &unit.machine),
+        (&plan, &revolutions),
+        (present, &optimum),
+    );
+    let assessment = Assessment {
+        topic: Topic::Balance,
+        lead: output::lead(&plan, present, &optimum),
+        tables: output::tables((&target.case, &unit.machine), &plan, &assessed, &optimum),
+        figures: crank_balance(&picture),
+        notes,
+    };
+    let folder = run.folder.path();
+    let title = format!("Torque of the crank of {}", target.case.name);
+    let report = assessment.report(title, &folder.display().to_string());
+    for path in write_report(folder, &report)?.iter().take(1) {
+        message::print(&format!("open {}", path.display()));
+    }
+    report::folder::write(
+        folder,
+        "torque.csv",
+        &output::csv(&plan, (present, &optimum))?,
+    )?;
+    write_assessment(&run.folder, &assessment)?;
+    let wall_s = session.wall_s(&run);
+    let object = output::object(
+        (&target.case, &unit.machine),
+        &plan,
+        (&assessed, &optimum),
+        wall_s,
+    );
+    run.folder.write_json(RESULT, &object)?;
+    for note in &assessment.notes {
+        message::print(&format!("note: {note}"));
+    }
+    let tables = || text(&report, terminal::style());
+    terminal::print(arguments.output.output, tables, &object)
+}
+
+/// Returns the angle of the crank pin of a machine.
+fn pin_angle(unit: &PumpingUnit) -> anyhow::Result<PinAngle> {
+    let condition = &unit.machine.conditions[unit.case.objective.condition];
+    let turn = quasi_static(&unit.machine, condition)
+        .context("the crank of this case cannot complete a revolution")?;
+    Ok(PinAngle {
+        bottom_deg: turn.bottom_deg,
+        sense: unit.machine.crank.sense,
+    })
+}
+
+/// Returns the revolutions of a machine under the conditions of a plan, with the counterweight of each.
+fn revolutions(
+    plan: &BalancePlan,
+    pin: PinAngle,
+    weights: &[Counterweight],
+    simulations: &[Simulation],
+) -> Vec<Revolution> {
+    let hours: f64 = plan.operations.iter().map(|own| own.hours_per_day).sum();
+    let each = plan.operations.iter().zip(weights).zip(simulations);
+    each.map(|((operation, weight), simulation)| {
+        let curve = (&simulation.turn_deg[..], &simulation.crank_torque_n_m[..]);
+        Revolution::new(curve, pin, *weight, operation.hours_per_day / hours)
+    })
+    .collect()
+}
+
+/// Decodes the simulations of a machine.
+fn decoded(machine: &SimulatedMachine) -> anyhow::Result<Vec<Simulation>> {
+    let each = machine.curves.iter().map(Simulation::of);
+    Ok(each.collect::<Result<_, _>>()?)
+}
+
+/// Assesses every machine with the present counterweight; the last of those that are compared with its intervals.
+fn assess(
+    (unit, plan): (&PumpingUnit, &BalancePlan),
+    pin: PinAngle,
+    simulated: &SimulatedMachines,
+) -> anyhow::Result<Vec<AssessedCrank>> {
+    let of_machine = |machine: &SimulatedMachine| -> anyhow::Result<AssessedCrank> {
+        let simulations = decoded(machine)?;
+        let all = revolutions(plan, pin, &plan.present, &simulations);
+        let states = states(&unit.machine, plan, (&plan.present, &all), &simulations);
+        let best = plan.goal.best(&all, &plan.bounds);
+        Ok(AssessedCrank::new(&machine.name, states, best))
+    };
+    let beside = match &simulated.beside {
+        Some((neighbours, machines)) => {
+            let machines = machines.iter().map(&of_machine);
+            Some((neighbours, machines.collect::<anyhow::Result<Vec<_>>>()?))
+        }
+        None => None,
+    };
+    let last = simulated.compared.len().saturating_sub(1);
+    let each = simulated.compared.iter().enumerate();
+    each.map(|(k, machine)| {
+        let crank = of_machine(machine)?;
+        Ok(match &beside {
+            Some((neighbours, beside)) if k == last => crank.with_intervals(neighbours, beside),
+            _ => crank,
+        })
+    })
+    .collect()
+}
+
+/// Seeks the counterweight of the last machine, simulates the machine with it and, where that moves the optimum, repeats
+/// both. Returns its state under each condition, and the revolutions by which it was found.
+fn optimum(
+    (unit, target, plan): (&PumpingUnit, &AssessmentTarget, &BalancePlan),
+    pin: PinAngle,
+    simulated: &SimulatedMachines,
+    workers: usize,
+) -> anyhow::Result<(AssessedCrank, Vec<Revolution>)> {
+    let machine = simulated
+        .compared
+        .last()
+        .context("no machine is compared")?;
+    let mut all = revolutions(plan, pin, &plan.present, &decoded(machine)?);
+    let mut best = plan.goal.best(&all, &plan.bounds);
+    for repetition in 1.. {
+        let weights = vec![best; plan.operations.len()];
+        let simulations = simulate_with(unit, target, plan, best, workers)?;
+        all = revolutions(plan, pin, &weights, &simulations);
+        let next = plan.goal.best(&all, &plan.bounds);
+        let moved = (next.moment_n_m - best.moment_n_m).abs() / best.moment_n_m.max(1.0);
+        if moved < SETTLED || repetition == MOST_REPETITIONS {
+            let states = states(&unit.machine, plan, (&weights, &all), &simulations);
+            return Ok((AssessedCrank::new("optimum", states, best), all));
+        }
+        best = next;
+    }
+    anyhow::bail!("no optimum was simulated")
+}
+
+/// Simulates the last machine of an assessment with another counterweight under the conditions of a plan.
+fn simulate_with(
+    unit: &PumpingUnit,
+    target: &AssessmentTarget,
+    plan: &BalancePlan,
+    weight: Counterweight,
+    workers: usize,
+) -> anyhow::Result<Vec<Simulation>> {
+    let mut changed = unit.clone();
+    changed.machine.crank.counterweight_phase_deg = weight.phase_deg;
+    for operation in &plan.operations {
+        let condition = &mut changed.machine.conditions[operation.condition];
+        condition.counterweight_moment_n_m = weight.moment_n_m;
+    }
+    let case = without_record(changed.into_case()?);
+    let individual = target.assessed().context("no machine is compared")?;
+    let request = |own: &Operation| CompareRequest {
+        condition: own.condition,
+        first: 0,
+        individuals: vec![individual.clone()],
+        frames: 0,
+        columns: Vec::new(),
+    };
+    let wanted: Vec<CompareRequest> = plan.operations.iter().map(request).collect();
+    let groups = with_temporary_run(&case, "balance", workers.max(1), async |dispatch, stop| {
+        study::compare(dispatch, &case, &wanted, stop).await
+    })?;
+    let each = run::assessment::curves(&case, &groups, 0)?;
+    Ok(each.iter().map(Simulation::of).collect::<Result<_, _>>()?)
+}
+
+/// Removes the measured records from a case: what was measured was another counterweight's.
+fn without_record(mut case: Case) -> Case {
+    for channel in &mut case.channels {
+        channel.record = None;
+    }
+    case
+}
+
+/// Returns the measured torque of a condition with the crank angles at which it was measured.
+fn measured(case: &Case, condition: usize) -> Option<(&[f64], &[f64])> {
+    let mut channels = case.channels_of(condition);
+    let (_, channel) = channels.find(|(_, own)| own.name == Sensor::Torque.name())?;
+    let record = channel.record.as_ref()?;
+    Some((&channel.abscissa.points, &record.mean))
+}
