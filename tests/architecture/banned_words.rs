@@ -55,6 +55,7 @@ const RULES: &[Rule] = &[
             "protocol/src/pumping_unit",
             "worker/src/pumping_unit",
             "coordinator/src/cli/command/head",
+            "coordinator/src/cli/command/balance",
             "coordinator/src/cli/command/life",
             "coordinator/src/cli/command/record.rs",
             "coordinator/src/cli/output/model/pumping_unit",

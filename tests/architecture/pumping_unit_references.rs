@@ -24,10 +24,11 @@ const HOUSE: [&str; 16] = [
 ];
 
 /// Folders and files that may refer to the pumping unit: its own, and those that register it.
-const KNOW_IT: [&str; 16] = [
+const KNOW_IT: [&str; 17] = [
     "protocol/src/pumping_unit",
     "worker/src/pumping_unit",
     "coordinator/src/cli/command/head",
+    "coordinator/src/cli/command/balance",
     "coordinator/src/cli/command/life",
     "coordinator/src/cli/command/record.rs",
     "coordinator/src/cli/output/model",

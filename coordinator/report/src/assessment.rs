@@ -1,4 +1,4 @@
-//! Assessment of a machine after a run, such as the life of a part: kept as data, so that the report of the run shows it.
+//! MachineAssessment of a machine after a run, such as the life of a part: kept as data, so that the report of the run shows it.
 use super::document::{Block, Figure, Report, Section, Table, figures, tables};
 use serde::{Deserialize, Serialize};
 
@@ -6,15 +6,15 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Topic {
-    /// Fatigue life of the back head.
+    /// Fatigue life of a part.
     Life,
-    /// Torque of the crank and its balance.
+    /// Torque of the drive and its balance.
     Balance,
 }
 
-/// Assessment of a machine: what the report of a run, and the page of the assessment itself, say of it.
+/// MachineAssessment of a machine: what the report of a run, and the page of the assessment itself, say of it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Assessment {
+pub struct MachineAssessment {
     /// Topic of the assessment.
     pub topic: Topic,
     /// Main result in one sentence.
@@ -27,12 +27,12 @@ pub struct Assessment {
     pub figures: Vec<Figure>,
 }
 
-impl Assessment {
+impl MachineAssessment {
     /// Builds the section of a report that shows the assessment.
     pub fn section(&self) -> Section {
         let (id, title) = match self.topic {
-            Topic::Life => ("life", "Life of the back head"),
-            Topic::Balance => ("balance", "Torque of the crank"),
+            Topic::Life => ("life", "Life"),
+            Topic::Balance => ("balance", "Balance"),
         };
         let mut blocks = vec![Block::Lead(self.lead.clone())];
         if !self.notes.is_empty() {

@@ -1,7 +1,7 @@
 //! Plain data of a report, as handed over by the study, before any drawing.
 //!
 //! Every name of a quantity states its unit. Independent of files, clocks and workers.
-use crate::assessment::Assessment;
+use crate::assessment::MachineAssessment;
 use discrepancy::identify::{Determination, UnknownEstimate};
 use discrepancy::validation::gap::Gap;
 use journal::account::{JobCost, Presence};
@@ -162,7 +162,7 @@ pub struct Calibration {
     /// only weakly between them.
     pub rivals: Vec<RivalFit>,
     /// Assessments that were made of the optimum.
-    pub assessments: Vec<Assessment>,
+    pub assessments: Vec<MachineAssessment>,
     /// Further notes and warnings, one sentence each.
     pub notes: Vec<String>,
 }

@@ -32,7 +32,7 @@ pub mod table;
 pub mod words;
 mod write;
 
-pub use assessment::{Assessment, Topic};
+pub use assessment::{MachineAssessment, Topic};
 pub use data::{
     Calibration, ConditionResult, HistoryPoint, Individual, Origin, RivalFit, ScoredCurves,
     SimulationView, SingleRun, is_determined,

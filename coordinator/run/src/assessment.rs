@@ -7,7 +7,7 @@ use crate::{
     diagnosis::{DiagnosisRun, inputs},
     folder::{GENES, RunFolder},
     hash::short_hash,
-    manifest::{CALIBRATE, DIAGNOSE, Manifest, RunIdentity, StartPoint},
+    manifest::{BALANCE, CALIBRATE, DIAGNOSE, LIFE, Manifest, RunIdentity, StartPoint},
     name::RunName,
     opened::Run,
 };
@@ -17,19 +17,12 @@ use protocol::{
     case::{Case, EffectSetting},
     job::{Curves, Verdict},
 };
-use report::{Assessment, words};
+use report::words;
 use search::strategy::family::rivals;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use study::{CompareRequest, Compared, Evaluator, NamedIndividual, StageView, Stop, Watch};
 use support::Problem;
-
-/// Name of the file with an assessment, by which the report of the assessed run shows it.
-const ASSESSMENT: &str = "assessment.json";
-/// Kind of run in the manifest of an assessment of the life of a part.
-pub const LIFE: &str = "life";
-/// Kind of run in the manifest of an assessment of the crank's balance.
-pub const BALANCE: &str = "balance";
 
 /// Settings of an assessment: the machines that it simulates.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -46,7 +39,7 @@ pub struct Machines {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LifeSettings(pub Machines);
 
-/// Settings of an assessment of the crank's balance.
+/// Settings of an assessment of the balance of a drive.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BalanceSettings(pub Machines);
 
@@ -424,22 +417,4 @@ pub fn curves(case: &Case, groups: &[Compared], k: usize) -> anyhow::Result<Vec<
         .into())
     });
     complete.collect()
-}
-
-/// Writes an assessment into its run folder, for the report of the assessed run.
-///
-/// # Errors
-/// As [`RunFolder::write_json`].
-pub fn write_assessment(folder: &RunFolder, assessment: &Assessment) -> anyhow::Result<()> {
-    folder.write_json(ASSESSMENT, assessment)
-}
-
-/// Reads the assessments that were made of a run.
-///
-/// # Errors
-/// If the file of one is damaged.
-pub(crate) fn assessments_of(run: &RunFolder) -> anyhow::Result<Vec<Assessment>> {
-    let folders = [LIFE, BALANCE].map(|kind| RunFolder::new(&run.file(kind)));
-    let made = folders.iter().filter(|own| own.file(ASSESSMENT).exists());
-    made.map(|own| own.read_json(ASSESSMENT)).collect()
 }

@@ -1,5 +1,5 @@
 //! Work of a calibration, its result as the journal states it, and the data of its report.
-use crate::{assessment::assessments_of, diagnosis::inputs, opened::Run};
+use crate::{diagnosis::inputs, opened::Run};
 use discrepancy::{
     diagnose::Inputs,
     identify::{LinearEstimate, UnknownEstimate},
@@ -173,7 +173,7 @@ pub fn report_data(
         conditions: found.compared.iter().filter_map(condition_result).collect(),
         rivals: rival_fits(run, &found.calibrated, identifiability)?,
         identifiability: identifiability.clone(),
-        assessments: assessments_of(&run.folder)?,
+        assessments: run.folder.assessments()?,
         notes,
     })
 }

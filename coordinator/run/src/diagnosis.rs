@@ -1,6 +1,5 @@
 //! Work of a diagnosis: its settings, its inputs (case and measured cycles) and its execution.
 use crate::{
-    assessment::assessments_of,
     command_line::quote,
     manifest::{self, DIAGNOSE, Manifest},
     opened::Run,
@@ -200,7 +199,7 @@ pub fn report_input<'a>(
         case: &run.case,
         diagnosed: recorded,
         origin: run.origin(String::new())?,
-        assessments: assessments_of(&run.folder)?,
+        assessments: run.folder.assessments()?,
         wall_s,
     })
 }

@@ -5,12 +5,13 @@
 //! and every result.
 use crate::{
     command_line::quote_path,
-    manifest::{CALIBRATE, DIAGNOSE, FORMAT, calibrate},
+    manifest::{BALANCE, CALIBRATE, DIAGNOSE, FORMAT, LIFE, calibrate},
 };
 use anyhow::Context as _;
 use case::{CaseEffect, write_genes};
 use journal::event::Event;
 use protocol::case::Case;
+use report::MachineAssessment;
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use std::{
     fs, io,
@@ -26,6 +27,9 @@ pub const CASE: &str = "case.json";
 pub const RESULT: &str = "result.json";
 /// Name of the gene file with the parameter values that a run found.
 pub const GENES: &str = "calibrated.toml";
+
+/// Name of the file with an assessment, by which the report of the assessed run shows it.
+const ASSESSMENT: &str = "assessment.json";
 
 /// Name of the folder that holds the keys of workers that the run itself launches.
 pub(crate) const KEYS: &str = "keys";
@@ -149,6 +153,24 @@ impl RunFolder {
         let mut text = serde_json::to_string_pretty(value)?;
         text.push('\n');
         self.write(name, &text)
+    }
+
+    /// Writes the assessment of a machine into its run folder.
+    ///
+    /// # Errors
+    /// If the file cannot be written.
+    pub fn write_assessment(&self, assessment: &MachineAssessment) -> anyhow::Result<()> {
+        self.write_json(ASSESSMENT, assessment)
+    }
+
+    /// Reads the assessments that were made of the run in the folder.
+    ///
+    /// # Errors
+    /// If the file of one is damaged.
+    pub(crate) fn assessments(&self) -> anyhow::Result<Vec<MachineAssessment>> {
+        let folders = [LIFE, BALANCE].map(|kind| Self::new(&self.file(kind)));
+        let made = folders.iter().filter(|own| own.file(ASSESSMENT).exists());
+        made.map(|own| own.read_json(ASSESSMENT)).collect()
     }
 
     /// Writes values of a case's unknowns as a gene file into the run folder, with the effects with which they

@@ -32,6 +32,10 @@ pub const DIAGNOSE: &str = "diagnose";
 pub const IDENTIFY: &str = "identify";
 /// Kind of run in the manifest of `horsehead evaluate`, which scores individuals for another program.
 pub const EVALUATE: &str = "evaluate";
+/// Kind of run in the manifest of an assessment of the life of a part.
+pub const LIFE: &str = "life";
+/// Kind of run in the manifest of an assessment of the balance of a drive.
+pub const BALANCE: &str = "balance";
 
 /// Returns `calibrate`, the kind of run assumed for a manifest that names none.
 pub(crate) fn calibrate() -> String {

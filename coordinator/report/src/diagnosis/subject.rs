@@ -1,5 +1,5 @@
 //! Input data of a diagnosis report.
-use crate::assessment::Assessment;
+use crate::assessment::MachineAssessment;
 use crate::data::Origin;
 use discrepancy::diagnose::{Diagnosis, Estimate};
 use discrepancy::laboratory::Stage;
@@ -19,7 +19,7 @@ pub struct DiagnosisInput<'a> {
     /// Provenance of the diagnosis (run, program, digest).
     pub origin: Origin,
     /// Assessments that were made of the answer.
-    pub assessments: Vec<Assessment>,
+    pub assessments: Vec<MachineAssessment>,
     /// Wall time of the diagnosis, over all sessions (s).
     pub wall_s: f64,
 }

@@ -3,7 +3,7 @@ use super::section::SECTIONS;
 use super::subject::DiagnosisInput;
 use super::{csv, words};
 use crate::ReportError;
-use crate::assessment::Assessment;
+use crate::assessment::MachineAssessment;
 use crate::document::{Report, Section};
 use crate::folder::{stream, write_report};
 use std::path::{Path, PathBuf};
@@ -13,7 +13,7 @@ pub fn report(subject: &DiagnosisInput<'_>) -> Report {
     let title = format!("Diagnosis of {}", subject.case.name);
     let mut sections: Vec<Section> = SECTIONS.iter().map(|section| section(subject)).collect();
     // before the provenance
-    let assessed = subject.assessments.iter().map(Assessment::section);
+    let assessed = subject.assessments.iter().map(MachineAssessment::section);
     let origin = sections.len() - 1;
     sections.splice(origin..origin, assessed);
     Report {

@@ -17,7 +17,7 @@ mod slowest;
 mod summary;
 mod worker;
 
-use super::assessment::Assessment;
+use super::assessment::MachineAssessment;
 use super::data::{Calibration, SingleRun};
 use super::document::Section;
 use super::kind;
@@ -44,7 +44,7 @@ pub(super) fn calibration(all: &Calibration) -> Vec<Section> {
     ];
     let own = kind::of(&all.case).sections("the optimised", all.optimum().as_ref());
     sections.extend(own);
-    sections.extend(all.assessments.iter().map(Assessment::section));
+    sections.extend(all.assessments.iter().map(MachineAssessment::section));
     sections.extend([
         parameters::calibration(all),
         gap::calibration(all),

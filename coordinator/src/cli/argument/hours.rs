@@ -1,7 +1,7 @@
 //! Argument that states how many hours a day the machine runs under each condition.
 use super::individual::condition;
 use clap::Args;
-use protocol::{case::Case, pumping_unit::Machine};
+use protocol::case::Case;
 use support::Problem;
 
 /// Hours a day under each condition.
@@ -28,20 +28,20 @@ pub(crate) struct Operation {
 }
 
 impl HoursChoice {
-    /// Returns the operation under each stated condition.
+    /// Returns the operation under each stated condition; `speed_rpm` gives the revolutions per minute under a condition.
     ///
     /// # Errors
     /// If a condition is unknown or stated twice, a number of hours is none, or a day has more than 24.
     pub(crate) fn operations(
         &self,
         case: &Case,
-        machine: &Machine,
+        speed_rpm: impl Fn(usize) -> f64,
     ) -> Result<Vec<Operation>, Problem> {
         let operation = |condition: usize, hours_per_day: f64| Operation {
             condition,
             name: case.conditions[condition].name.clone(),
             hours_per_day,
-            revolutions_per_day: 60.0 * hours_per_day * machine.conditions[condition].speed_rpm,
+            revolutions_per_day: 60.0 * hours_per_day * speed_rpm(condition),
         };
         let problem = |message: String, remedy: &str| Problem {
             message,

@@ -15,13 +15,12 @@ use clap::Args;
 use options::{BalanceOptions, BalancePlan};
 use protocol::{
     case::Case,
-    pumping_unit::{PumpingUnit, Sensor, Simulation},
+    pumping_unit::{PumpingUnit, Simulation},
 };
-use report::{Assessment, Topic, pumping_unit::crank_balance, text, write_report};
+use report::{MachineAssessment, Topic, pumping_unit::crank_balance, text, write_report};
 use run::{
     assessment::{
         AssessmentTarget, BalanceSettings, SimulatedMachine, SimulatedMachines, simulate_machines,
-        write_assessment,
     },
     folder::RESULT,
     message,
@@ -110,7 +109,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         (&plan, &revolutions),
         (present, &optimum),
     );
-    let assessment = Assessment {
+    let assessment = MachineAssessment {
         topic: Topic::Balance,
         lead: output::lead(&plan, present, &optimum),
         tables: output::tables((&target.case, &unit.machine), &plan, &assessed, &optimum),
@@ -128,7 +127,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         "torque.csv",
         &output::csv(&plan, (present, &optimum))?,
     )?;
-    write_assessment(&run.folder, &assessment)?;
+    run.folder.write_assessment(&assessment)?;
     let wall_s = session.wall_s(&run);
     let object = output::object(
         (&target.case, &unit.machine),
@@ -275,12 +274,4 @@ fn without_record(mut case: Case) -> Case {
         channel.record = None;
     }
     case
-}
-
-/// Returns the measured torque of a condition with the crank angles at which it was measured.
-fn measured(case: &Case, condition: usize) -> Option<(&[f64], &[f64])> {
-    let mut channels = case.channels_of(condition);
-    let (_, channel) = channels.find(|(_, own)| own.name == Sensor::Torque.name())?;
-    let record = channel.record.as_ref()?;
-    Some((&channel.abscissa.points, &record.mean))
 }

@@ -75,7 +75,9 @@ impl BalanceOptions {
     /// # Errors
     /// If a number is none, or the present counterweight lies outside of the bounds.
     pub(super) fn plan(&self, case: &Case, machine: &Machine) -> Result<BalancePlan, Problem> {
-        let operations = self.hours.operations(case, machine)?;
+        let operations = self
+            .hours
+            .operations(case, |k| machine.conditions[k].speed_rpm)?;
         for (option, value) in [("--rating", self.rating), ("--step", self.step)] {
             if value.is_some_and(|value| !(value.is_finite() && value > 0.0)) {
                 return Err(Problem {

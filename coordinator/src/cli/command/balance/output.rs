@@ -1,6 +1,5 @@
 //! Tables, figures' data and JSON object of `horsehead balance`.
 use super::{
-    measured,
     options::BalancePlan,
     summary::{AssessedCrank, State, goal_of},
     torque::{Counterweight, Goal, Revolution, mean_square},
@@ -8,7 +7,7 @@ use super::{
 use crate::cli::argument::hours::Operation;
 use protocol::{
     case::Case,
-    pumping_unit::{Counterweights, Machine},
+    pumping_unit::{Counterweights, Machine, Sensor},
 };
 use report::{
     document::{Row, Table},
@@ -112,6 +111,14 @@ pub(super) fn notes(
         }
     }
     notes
+}
+
+/// Returns the measured torque of a condition with the crank angles at which it was measured.
+fn measured(case: &Case, condition: usize) -> Option<(&[f64], &[f64])> {
+    let mut channels = case.channels_of(condition);
+    let (_, channel) = channels.find(|(_, own)| own.name == Sensor::Torque.name())?;
+    let record = channel.record.as_ref()?;
+    Some((&channel.abscissa.points, &record.mean))
 }
 
 /// Returns the values of a periodic curve at other crank angles.

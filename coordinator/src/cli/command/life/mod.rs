@@ -19,14 +19,13 @@ use protocol::{
     wire::WireError,
 };
 use report::{
-    Assessment, Topic,
+    MachineAssessment, Topic,
     pumping_unit::{HeadLifePicture, head_life},
     text, write_report,
 };
 use run::{
     assessment::{
         AssessmentTarget, LifeSettings, SimulatedMachine, SimulatedMachines, simulate_machines,
-        write_assessment,
     },
     folder::RESULT,
     message,
@@ -105,7 +104,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
              machine; `horsehead diagnose` finds what the model lacks"
         )
     }));
-    let assessment = Assessment {
+    let assessment = MachineAssessment {
         topic: Topic::Life,
         lead: output::lead(&plan, &assessed),
         tables: output::tables(&plan, &assessed),
@@ -122,7 +121,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         message::print(&format!("open {}", path.display()));
     }
     report::folder::write(folder, "life.csv", &output::csv(&assessed)?)?;
-    write_assessment(&run.folder, &assessment)?;
+    run.folder.write_assessment(&assessment)?;
     let object = output::object(&target.case, &plan, &assessed, session.wall_s(&run));
     run.folder.write_json(RESULT, &object)?;
     for note in &assessment.notes {

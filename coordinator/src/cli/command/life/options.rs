@@ -143,7 +143,9 @@ impl LifeOptions {
                 StressChoice::Normal => Criterion::NormalStress,
                 StressChoice::VonMises => Criterion::SignedVonMises,
             },
-            operations: self.hours.operations(case, machine)?,
+            operations: self
+                .hours
+                .operations(case, |k| machine.conditions[k].speed_rpm)?,
             target_years: self.target_years,
             yield_mpa: self.r#yield,
         })
