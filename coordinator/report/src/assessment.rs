@@ -1,4 +1,4 @@
-//! MachineAssessment of a machine after a run, such as the life of a part: kept as data, so that the report of the run shows it.
+//! Assessment of a machine after a run, such as the life of a part: kept as data, so that the report of the run shows it.
 use super::document::{Block, Figure, Report, Section, Table, figures, tables};
 use serde::{Deserialize, Serialize};
 
@@ -12,7 +12,7 @@ pub enum Topic {
     Balance,
 }
 
-/// MachineAssessment of a machine: what the report of a run, and the page of the assessment itself, say of it.
+/// Assessment of a machine: what the report of a run, and the page of the assessment itself, say of it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MachineAssessment {
     /// Topic of the assessment.

@@ -6,7 +6,12 @@ mod summary;
 mod torque;
 
 use crate::cli::{
-    argument::{case::case_folder, hours::Operation, output::OutputChoice, workers::WorkersChoice},
+    argument::{
+        case::case_folder,
+        hours::Operation,
+        output::{Output, OutputChoice},
+        workers::WorkersChoice,
+    },
     output::{problem::EXIT_CODES, progress::StageDisplay, terminal},
 };
 use anyhow::Context as _;
@@ -136,8 +141,9 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         wall_s,
     );
     run.folder.write_json(RESULT, &object)?;
-    for note in &assessment.notes {
-        message::print(&format!("note: {note}"));
+    // the tables have them
+    if arguments.output.output == Output::Json {
+        message::print_notes(&assessment.notes);
     }
     let tables = || text(&report, terminal::style());
     terminal::print(arguments.output.output, tables, &object)

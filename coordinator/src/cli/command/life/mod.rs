@@ -6,7 +6,11 @@ mod place;
 mod spots;
 
 use crate::cli::{
-    argument::{case::case_folder, output::OutputChoice, workers::WorkersChoice},
+    argument::{
+        case::case_folder,
+        output::{Output, OutputChoice},
+        workers::WorkersChoice,
+    },
     output::{problem::EXIT_CODES, progress::StageDisplay, terminal},
 };
 use body::Body;
@@ -124,8 +128,9 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     run.folder.write_assessment(&assessment)?;
     let object = output::object(&target.case, &plan, &assessed, session.wall_s(&run));
     run.folder.write_json(RESULT, &object)?;
-    for note in &assessment.notes {
-        message::print(&format!("note: {note}"));
+    // the tables have them
+    if arguments.output.output == Output::Json {
+        message::print_notes(&assessment.notes);
     }
     let tables = || text(&report, terminal::style());
     terminal::print(arguments.output.output, tables, &object)
