@@ -1,6 +1,6 @@
 //! `horsehead balance` on the shipped case: torque, energy and counterweight against simulations of their own, and inputs
 //! that cannot be meant.
-use crate::{json, number};
+use crate::{changed_case, json, number};
 use serde_json::Value;
 use std::{f64::consts::TAU, fs, path::Path, process::Command};
 
@@ -16,23 +16,6 @@ fn simulated(case: &str, condition: &str) -> (Vec<f64>, f64) {
 
 fn rms(torque: &[f64]) -> f64 {
     (torque.iter().map(|x| x * x).sum::<f64>() / torque.len() as f64).sqrt()
-}
-
-/// Copies the shipped case with other text of its file.
-fn changed_case(folder: &Path, change: impl Fn(String) -> String) -> String {
-    let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases/cyjs10-5-37hb");
-    for part in ["back_head", "measured"] {
-        fs::create_dir_all(folder.join(part)).unwrap();
-        for file in fs::read_dir(shipped.join(part)).unwrap() {
-            let file = file.unwrap().path();
-            fs::copy(&file, folder.join(part).join(file.file_name().unwrap())).unwrap();
-        }
-    }
-    let text = fs::read_to_string(shipped.join("case.toml")).unwrap();
-    let changed = change(text.clone());
-    assert_ne!(text, changed);
-    fs::write(folder.join("case.toml"), changed).unwrap();
-    folder.to_str().unwrap().to_owned()
 }
 
 /// Checks torque and energy against the simulation and its energy balance, the best moment against simulations of cases

@@ -1,5 +1,5 @@
 //! `horsehead life` on the shipped case: hot spots, gauges, mixes of conditions, and options that cannot be meant.
-use crate::{json, number};
+use crate::{changed_case, json, number};
 use fatigue::{Assessment, Curve, MeanStress, damage};
 use serde_json::Value;
 use std::{fs, path::Path, process::Command};
@@ -163,4 +163,23 @@ fn options_that_cannot_be_meant_are_named_with_a_remedy() {
             assert!(errors.contains(said), "{words:?}: {said}\n{errors}");
         }
     }
+}
+
+/// Checks that a case without a mesh has lives at its gauges, those of the case with one, and says why at no other place.
+#[test]
+fn without_a_mesh_the_gauges_alone_are_assessed() {
+    let scratch = tempfile::tempdir().unwrap();
+    let case = changed_case(&scratch.path().join("case"), |text| {
+        let lines = text.lines();
+        let kept = lines.filter(|line| !line.starts_with("mesh_file"));
+        kept.collect::<Vec<_>>().join("\n")
+    });
+    let run = scratch.path().join("life");
+    let bare = json(&["life", &case, "--run", run.to_str().unwrap()]);
+    assert_eq!(bare["hot_spots"], serde_json::json!([]));
+    let run = scratch.path().join("whole");
+    let whole = json(&["life", "CASE", "--run", run.to_str().unwrap()]);
+    assert_eq!(bare["gauges"], whole["gauges"]);
+    let page = fs::read_to_string(scratch.path().join("life/report.html")).unwrap();
+    assert!(page.contains("mesh_file") && page.contains("of the gauges at 3"));
 }

@@ -31,6 +31,23 @@ fn number(value: &Value) -> f64 {
     value.as_f64().unwrap()
 }
 
+/// Copies the shipped case with other text of its file.
+fn changed_case(folder: &Path, change: impl Fn(String) -> String) -> String {
+    let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases/cyjs10-5-37hb");
+    for part in ["back_head", "measured"] {
+        fs::create_dir_all(folder.join(part)).unwrap();
+        for file in fs::read_dir(shipped.join(part)).unwrap() {
+            let file = file.unwrap().path();
+            fs::copy(&file, folder.join(part).join(file.file_name().unwrap())).unwrap();
+        }
+    }
+    let text = fs::read_to_string(shipped.join("case.toml")).unwrap();
+    let changed = change(text.clone());
+    assert_ne!(text, changed);
+    fs::write(folder.join("case.toml"), changed).unwrap();
+    folder.to_str().unwrap().to_owned()
+}
+
 /// Checks `horsehead head` on the shipped mesh: frequencies as in the table, exact stress close to the table,
 /// and a VTU file with stress and the displacement of every mode.
 #[test]

@@ -51,6 +51,20 @@ impl HeadSource {
 /// # Errors
 /// As [`crate::load()`]; also for a case without mesh or gauge locations.
 pub fn load_head(folder: &Path) -> Result<(PumpingUnit, HeadSource), CaseError> {
+    load_meshed_head(folder)?.ok_or_else(|| {
+        damaged(
+            &folder.join("case.toml"),
+            "`flexible_head` names no mesh_file: there is nothing to reduce",
+            "add mesh_file = \"FILE.msh\" (Gmsh 4.1)",
+        )
+    })
+}
+
+/// Loads what [`load_head`] does; `None` for a case without mesh.
+///
+/// # Errors
+/// As [`load_head`], but for the mesh.
+pub fn load_meshed_head(folder: &Path) -> Result<Option<(PumpingUnit, HeadSource)>, CaseError> {
     let overrides = Overrides::default();
     let document = document(folder, &overrides)?;
     let Resolved {
@@ -65,11 +79,7 @@ pub fn load_head(folder: &Path) -> Result<(PumpingUnit, HeadSource), CaseError> 
         StaleTables::Accepted,
     )?;
     let (Some((mesh, mesh_blake3)), Some(source_blake3)) = (head.mesh, head.source_blake3) else {
-        return Err(damaged(
-            &folder.join("case.toml"),
-            "`flexible_head` names no mesh_file: there is nothing to reduce",
-            "add mesh_file = \"FILE.msh\" (Gmsh 4.1)",
-        ));
+        return Ok(None);
     };
     let modes_file = folder.join(&flexible.modes_file);
     let Some(gauges) = head.provenance.gauges else {
@@ -93,5 +103,5 @@ pub fn load_head(folder: &Path) -> Result<(PumpingUnit, HeadSource), CaseError> 
         modes_file,
     };
     let case = loaded.case;
-    Ok((PumpingUnit { case, machine }, source))
+    Ok(Some((PumpingUnit { case, machine }, source)))
 }

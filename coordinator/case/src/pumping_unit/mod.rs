@@ -36,7 +36,7 @@ pub use head::{GaugePlace, WrapStress};
 pub use head_comparison::{
     HalfRanges, HeadComparison, INERT, ModeMatch, WrappedTurn, compare_head, mac, wrapped_turn,
 };
-pub use head_source::{HeadSource, load_head};
+pub use head_source::{HeadSource, load_head, load_meshed_head};
 pub use record::{RecordFacts, count_samples};
 pub use twin::TwinFile;
 

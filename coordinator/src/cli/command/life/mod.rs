@@ -14,7 +14,7 @@ use crate::cli::{
     output::{problem::EXIT_CODES, progress::StageDisplay, terminal},
 };
 use body::Body;
-use case::pumping_unit::{HeadSource, load_head};
+use case::pumping_unit::{HeadSource, load_meshed_head};
 use clap::Args;
 use options::{LifeOptions, LifePlan};
 use protocol::{
@@ -77,14 +77,17 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     message::print_notes(&target.notes);
     let unit = pumping_unit(&target.case)?;
     let plan = arguments.options.plan(&target.case, &unit.machine)?;
-    let (read, source) = load_head(&target.folder)?;
-    if source.stale {
+    let head = load_meshed_head(&target.folder)?;
+    if head.as_ref().is_some_and(|(_, source)| source.stale) {
         message::print(
             "note: the tables of the case are missing or were computed from other inputs; `horsehead head CASE --write` \
              replaces them",
         );
     }
-    let spec = super::head::surface_spec(&read, &source)?;
+    let spec = head.as_ref();
+    let spec = spec
+        .map(|(read, source)| super::head::surface_spec(read, source))
+        .transpose()?;
     let conditions: Vec<usize> = plan.conditions().collect();
     let run = target.begin(arguments.run.as_deref(), LifeSettings)?;
     let (reduced, simulated) = session.work(
@@ -92,16 +95,30 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         &arguments.workers.session()?,
         async |dispatch, stop| {
             let mut display = StageDisplay::new();
-            let reduced = super::head::reduce_head(dispatch, &spec, stop).await?;
+            let reduced = match &spec {
+                Some(spec) => Some(super::head::reduce_head(dispatch, spec, stop).await?),
+                None => None,
+            };
             let simulated =
                 simulate_machines(dispatch, &target, &conditions, &mut display, stop).await;
             display.clear();
             Ok((reduced, simulated?))
         },
     )?;
-    let body = Body::new(&source.mesh, &reduced, &unit.machine)?;
-    let assessed = assess(&body, &plan, &simulated)?;
+    let surface = head
+        .as_ref()
+        .map(|(_, source)| source)
+        .zip(reduced.as_ref());
+    let body = surface.map(|(source, reduced)| Body::new(&source.mesh, reduced, &unit.machine));
+    let body = body.transpose()?;
+    let assessed = assess(body.as_ref(), &plan, &simulated)?;
     let mut notes = spots::notes(&plan, &assessed);
+    if body.is_none() {
+        notes.push(
+            "the case names no mesh of its head, `mesh_file` in [flexible_head]: lives are those of the gauges alone"
+                .to_owned(),
+        );
+    }
     notes.extend(simulated.noise_ratio.map(|ratio| {
         format!(
             "lives have no interval: the fit leaves {ratio:.1} times the noise, so that its numbers are not those of the \
@@ -112,9 +129,9 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         topic: Topic::Life,
         lead: output::lead(&plan, &assessed),
         tables: output::tables(&plan, &assessed),
-        figures: match assessed.last() {
-            Some(last) => figures((&body, &source), &plan, last),
-            None => Vec::new(),
+        figures: match (&body, surface, assessed.last()) {
+            (Some(body), Some((source, _)), Some(last)) => figures((body, source), &plan, last),
+            _ => Vec::new(),
         },
         notes,
     };
@@ -138,7 +155,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
 
 /// Assesses all machines; the last of those that are compared with its spread.
 fn assess(
-    body: &Body<'_>,
+    body: Option<&Body<'_>>,
     plan: &LifePlan,
     simulated: &SimulatedMachines,
 ) -> Result<Vec<AssessedVariant>, WireError> {

@@ -126,40 +126,43 @@ fn life(plan: &LifePlan, own: &Life) -> Value {
 
 /// States the shortest life, where it is, and its interval.
 pub(super) fn lead(plan: &LifePlan, assessed: &[AssessedVariant]) -> String {
-    let last = assessed.last();
-    let Some((last, spot)) = last.and_then(|own| Some((own, own.hot_spots.first()?))) else {
-        return "No point of the head is assessed.".to_owned();
+    let Some(last) = assessed.last() else {
+        return "Nothing is assessed.".to_owned();
     };
-    let place = spot.bearing.map_or_else(String::new, |own| {
-        format!(
-            " beside pin {}, {:.0} deg from x, {:.0} mm from its hole,",
-            own.pin,
-            own.angle_deg,
-            1e3 * own.distance_m
-        )
-    });
-    let spread = match (spot.life.ci95, spot.life.over_fits) {
-        (Some([low, high]), _) => format!(" (95 %: {} to {})", years(low), years(high)),
-        (None, Some([low, high])) => {
-            format!(
-                " (over the fits of the search: {} to {})",
-                years(low),
-                years(high)
-            )
+    let curve = &plan.assessment.curve.name;
+    let gauges = (1..).zip(&last.gauges);
+    let worst = gauges.min_by(|a, b| a.1.years.total_cmp(&b.1.years));
+    let (place, life) = match (last.hot_spots.first(), worst) {
+        (Some(spot), _) => {
+            let place = spot.bearing.map_or_else(String::new, |own| {
+                format!(
+                    " beside pin {}, {:.0} deg from x, {:.0} mm from its hole,",
+                    own.pin,
+                    own.angle_deg,
+                    1e3 * own.distance_m
+                )
+            });
+            (place, &spot.life)
         }
+        (None, Some((number, life))) => (format!(" of the gauges at {number},"), life),
+        (None, None) => return "Nothing is assessed.".to_owned(),
+    };
+    let ends = |[low, high]: [f64; 2]| format!("{} to {}", years(low), years(high));
+    let spread = match (life.ci95, life.over_fits) {
+        (Some(own), _) => format!(" (95 %: {})", ends(own)),
+        (None, Some(own)) => format!(" (over the fits of the search: {})", ends(own)),
         (None, None) => String::new(),
     };
-    if spot.life.years.is_finite() {
+    if life.years.is_finite() {
         format!(
-            "With the {} parameters the head cracks first{place} after {} years{spread}, by {}.",
+            "With the {} parameters the head cracks first{place} after {} years{spread}, by {curve}.",
             last.name,
-            years(spot.life.years),
-            plan.assessment.curve.name
+            years(life.years),
         )
     } else {
         format!(
-            "With the {} parameters no stress of the head does damage, by {}.",
-            last.name, plan.assessment.curve.name
+            "With the {} parameters no stress of the head does damage, by {curve}.",
+            last.name
         )
     }
 }
@@ -271,7 +274,7 @@ pub(super) fn tables(plan: &LifePlan, assessed: &[AssessedVariant]) -> Vec<Table
         "Life of the back head with the {} parameters, {}",
         last.name, plan.assessment.curve.name
     );
-    tables.push(Table::new(title, head, spots.collect()));
+    tables.extend(Table::new(title, head, spots.collect()).non_empty());
     let head = ["", "range MPa", "life years", "spread", "load factor"];
     let gauges = (1..).zip(&last.gauges).map(|(number, own)| {
         let cells = [

@@ -77,9 +77,9 @@ pub(super) struct Spread<'a> {
     pub(super) neighbours: Option<(&'a Neighbours, &'a [Variant<'a>])>,
 }
 
-/// Assesses the surface and the gauges for each variant, with the spread of the last.
+/// Assesses the gauges and, where there is a mesh, the surface for each variant, with the spread of the last.
 pub(super) fn assess(
-    body: &Body<'_>,
+    body: Option<&Body<'_>>,
     plan: &LifePlan,
     variants: &[Variant<'_>],
     spread: &Spread<'_>,
@@ -98,6 +98,42 @@ pub(super) fn assess(
 }
 
 fn assess_variant(
+    body: Option<&Body<'_>>,
+    plan: &LifePlan,
+    variant: &Variant<'_>,
+    spread: &Spread<'_>,
+) -> AssessedVariant {
+    let beside = spread.neighbours.map_or(&[][..], |(_, own)| own);
+    let neighbours = spread.neighbours.map(|(own, _)| own);
+    let gauge = |gauge: usize| {
+        let counted = |variant: &Variant<'_>| -> Vec<Vec<StressCycle>> {
+            let curves = variant.simulations.iter().map(|own| &own.gauge_mpa[gauge]);
+            curves
+                .map(|curve| cycles(curve, Residue::Repeating))
+                .collect()
+        };
+        let years = |other: &Variant<'_>| years(plan, &counted(other), 1.0);
+        let all = [spread.others, beside];
+        let all = all.map(|all| all.iter().map(years).collect());
+        life(plan, &counted(variant), all, neighbours)
+    };
+    let gauges = (0..4).map(gauge).collect();
+    let assessed = AssessedVariant {
+        name: variant.name.to_owned(),
+        hot_spots: Vec::new(),
+        gauges,
+        years: Vec::new(),
+        sectors: Vec::new(),
+    };
+    match body {
+        Some(body) => with_surface(assessed, body, plan, variant, spread),
+        None => assessed,
+    }
+}
+
+/// Adds the lives of the surface to those of the gauges.
+fn with_surface(
+    assessed: AssessedVariant,
     body: &Body<'_>,
     plan: &LifePlan,
     variant: &Variant<'_>,
@@ -125,7 +161,6 @@ fn assess_variant(
     });
     let beside = spread.neighbours.map_or(&[][..], |(_, own)| own);
     let [of_others, of_beside] = [spread.others, beside].map(|all| all_periods(plan, all));
-    let neighbours = spread.neighbours.map(|(own, _)| own);
     let spot = |own: &&PointDamage| {
         let place_m = body.place_m(own.point);
         let counted = |periods: &[LoadPeriod<'_>]| -> Vec<Vec<StressCycle>> {
@@ -141,29 +176,16 @@ fn assess_variant(
                 plan,
                 &counted(&of_variant),
                 [&of_others, &of_beside].map(|all| all.iter().map(years).collect()),
-                neighbours,
+                spread.neighbours.map(|(own, _)| own),
             ),
             von_mises_mpa: own.largest_von_mises,
         }
     };
-    let gauge = |gauge: usize| {
-        let counted = |variant: &Variant<'_>| -> Vec<Vec<StressCycle>> {
-            let curves = variant.simulations.iter().map(|own| &own.gauge_mpa[gauge]);
-            curves
-                .map(|curve| cycles(curve, Residue::Repeating))
-                .collect()
-        };
-        let years = |other: &Variant<'_>| years(plan, &counted(other), 1.0);
-        let all = [spread.others, beside];
-        let all = all.map(|all| all.iter().map(years).collect());
-        life(plan, &counted(variant), all, neighbours)
-    };
     AssessedVariant {
-        name: variant.name.to_owned(),
         hot_spots: worst.iter().map(spot).collect(),
-        gauges: (0..4).map(gauge).collect(),
         years: of_points,
         sectors: sectors.unwrap_or_default(),
+        ..assessed
     }
 }
 
