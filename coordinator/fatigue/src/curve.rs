@@ -266,7 +266,23 @@ mod tests {
             near(curve.cycles(knee), 1e7, 1e-9);
             assert!(curve.cycles(0.5 * knee) > curve.cycles(knee));
         }
-        near(Curve::named("dnv-d").unwrap().cycles(100.0), 1.4588e6, 1e-3);
+        let d = Curve::named("dnv-d").unwrap();
+        near(d.cycles(100.0), 1.4588e6, 1e-3);
+        // the mean curve lies two standard deviations of 0.2 above, to the digits of the code's survival
+        let mean = d.clone().at_survival(0.5).unwrap();
+        for range in [100.0, 30.0] {
+            near(
+                mean.cycles(range) / d.cycles(range),
+                libm::pow(10.0, 0.4),
+                5e-3,
+            );
+        }
+        near(
+            d.clone().at_survival(0.977).unwrap().cycles(100.0),
+            d.cycles(100.0),
+            1e-12,
+        );
+        assert!(Curve::named("en-71").unwrap().at_survival(0.9).is_none());
     }
 
     #[test]

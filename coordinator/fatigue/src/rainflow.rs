@@ -133,7 +133,7 @@ mod tests {
     }
 
     /// Judges: the tests of the Python packages `rainflow` (order and means of the standard's example, with zeros at both
-    /// ends) and `fatpack` (24 reversals; its count concatenates the residue, which is that of a repeated history).
+    /// ends), `fatpack` (24 reversals; its count concatenates the residue, which is that of a repeated history) and `pylife`.
     #[test]
     fn vectors_of_other_programs_are_counted_alike() {
         let history = [0.0, -2.0, 1.0, -3.0, 5.0, -1.0, 3.0, -4.0, 4.0, -2.0, 0.0];
@@ -155,6 +155,29 @@ mod tests {
             [1.0, 1.0, 2.0, 3.0, 4.0, 4.0, 4.0, 6.0, 7.0, 8.0, 11.0, 11.0]
         );
         assert!(own.iter().all(|own| (own.count - 1.0).abs() < 1e-12));
+        // pylife's example of Haibach, "Betriebsfestigkeit", fig. 3.3-30, and that of its lecture: the cycles that close, and
+        // those that its residue (2, 6, 1, 5, 2; 1, 7, 1, 2) closes when it is repeated
+        let haibach = [
+            2.0, 5.0, 3.0, 6.0, 2.0, 3.0, 1.0, 6.0, 1.0, 4.0, 2.0, 3.0, 1.0, 4.0, 2.0, 5.0, 3.0,
+            4.0, 2.0,
+        ];
+        let lecture = [1.0, 7.0, 4.0, 3.0, 4.0, 2.0, 5.0, 3.0, 6.0, 1.0, 2.0];
+        for (history, closed, of_residue) in [
+            (
+                &haibach[..],
+                &[2.0, 1.0, 5.0, 1.0, 3.0, 2.0, 1.0][..],
+                [5.0, 3.0],
+            ),
+            (&lecture[..], &[1.0, 2.0, 4.0][..], [6.0, 1.0]),
+        ] {
+            let mut expected = [closed, &of_residue[..]].concat();
+            let own = cycles(history, Residue::Repeating);
+            let mut found: Vec<f64> = own.iter().map(|own| own.range).collect();
+            for ranges in [&mut expected, &mut found] {
+                ranges.sort_by(f64::total_cmp);
+            }
+            assert_eq!(found, expected);
+        }
     }
 
     #[test]
