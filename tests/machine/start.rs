@@ -88,7 +88,6 @@ fn exact_statics(
         turn_deg: vec![(TAU - turn).to_degrees()],
         contact_deg: vec![at.tangent.to_degrees()],
         tension_n: vec![system.equations.base_tensions(0).sum()],
-        ..QuasiStaticTurn::default()
     };
     let wrapped = wrapped_turn(&quasi_static, own.back_head.rope_anchor_deg);
     let rope = wrapped.exact(&own.modal_head.influence);

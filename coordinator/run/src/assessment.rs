@@ -69,7 +69,7 @@ pub struct AssessmentTarget {
     pub case: Case,
     machines: Machines,
     /// Run that is assessed; `None` for a case.
-    run: Option<PathBuf>,
+    pub run: Option<PathBuf>,
     /// Case with its records, and parameters at which the unknowns are estimated; `None` where there are none, or where
     /// the case has changed since the run.
     estimate: Option<(Loaded, Vec<f64>)>,
@@ -136,6 +136,10 @@ impl AssessmentTarget {
 
     fn of_calibration(target: &Path) -> anyhow::Result<Self> {
         let run = CalibrationRun::open(target)?;
+        let (loaded, notes) = match run.loaded() {
+            Ok(loaded) => (Some(loaded), Vec::new()),
+            Err(error) => (None, vec![format!("there are no intervals: {error}")]),
+        };
         let found = calibration::recorded(finished(&run)?)?.result.calibrated;
         let best = found.best.genes.clone();
         let space = run.manifest.space(&run.case)?;
@@ -156,11 +160,11 @@ impl AssessmentTarget {
                     .map(|own| own.end.genes.clone())
                     .collect(),
             },
-            estimate: run.loaded().ok().map(|loaded| (loaded, best)),
+            estimate: loaded.map(|loaded| (loaded, best)),
             run: Some(target.to_owned()),
             folder: run.manifest.case_folder.clone(),
             measured: run.manifest.replaced_records().map(ToOwned::to_owned),
-            notes: Vec::new(),
+            notes,
             synthetic: run.manifest.synthetic,
             case: run.case,
         })
@@ -187,9 +191,19 @@ impl AssessmentTarget {
             plain("recalibrated", genes)
         }));
         compared.extend(with_and_without(&loaded.case, "diagnosed", &start.genes));
+        let case = loaded.case.clone();
+        // what was found in the record is no knowledge beside it
+        for unknown in &mut loaded.case.unknowns {
+            let of_found = unknown
+                .of_effect()
+                .is_some_and(|(id, _)| found.iter().any(|own| own == id));
+            if of_found {
+                unknown.prior = None;
+            }
+        }
         Ok(Self {
             folder: run.manifest.case_folder.clone(),
-            case: loaded.case.clone(),
+            case,
             machines: Machines {
                 target: std::path::absolute(target)?,
                 compared,
@@ -308,18 +322,19 @@ pub struct SimulatedMachines {
     pub others: Vec<SimulatedMachine>,
     /// Machines beside the last one, by which a quantity has an interval; `None` where it has none.
     pub beside: Option<(Neighbours, Vec<SimulatedMachine>)>,
-    /// Ratio of the misfit to the noise where the fit leaves so much that quantities have no interval.
-    pub noise_ratio: Option<f64>,
+    /// Reasons why machines were left out, or why quantities have no interval.
+    pub notes: Vec<String>,
 }
 
-/// Simulates the machines of an assessment under several conditions.
+/// Simulates the machines of an assessment under several conditions, with a number of snapshots of the motion. Machines
+/// beside the assessed one that do not complete are left out.
 ///
 /// # Errors
-/// If a simulation ends early or cannot be done, no evaluator is left, or the user stops.
+/// If the simulation of the assessed machine ends early, one cannot be done, no evaluator is left, or the user stops.
 pub async fn simulate_machines<E: Evaluator>(
     evaluator: &mut E,
     target: &AssessmentTarget,
-    conditions: &[usize],
+    wanted: (&[usize], u32),
     watch: &mut dyn Watch<StageView>,
     stop: &mut Stop,
 ) -> anyhow::Result<SimulatedMachines> {
@@ -327,22 +342,29 @@ pub async fn simulate_machines<E: Evaluator>(
         compared, others, ..
     } = &target.machines;
     let mut individuals = compared.clone();
-    let count = individuals.len();
-    let further = others.iter().enumerate();
+    let assessed = individuals.len().saturating_sub(1);
+    let further = (1..).zip(others);
     individuals.extend(
-        further
-            .map(|(k, genes)| NamedIndividual::new(format!("other fit {}", k + 1), genes.clone())),
+        further.map(|(k, genes)| NamedIndividual::new(format!("other fit {k}"), genes.clone())),
     );
     let position = individuals.len();
-    let case = &target.case;
-    let mut compared = simulate(evaluator, case, conditions, (0, individuals), stop).await?;
-    let others = compared.split_off(count);
+    let all = simulate(evaluator, &target.case, wanted, (0, individuals), stop).await?;
     let mut simulated = SimulatedMachines {
-        compared,
-        others,
+        compared: Vec::new(),
+        others: Vec::new(),
         beside: None,
-        noise_ratio: None,
+        notes: Vec::new(),
     };
+    for (k, machine) in all.into_iter().enumerate() {
+        match machine {
+            Ok(machine) if k <= assessed => simulated.compared.push(machine),
+            Ok(machine) => simulated.others.push(machine),
+            Err(problem) if k == assessed => return Err(problem.into()),
+            Err(problem) => simulated
+                .notes
+                .push(format!("left out: {}", problem.message)),
+        }
+    }
     let Some(inputs) = target.estimate_inputs()? else {
         return Ok(simulated);
     };
@@ -351,51 +373,68 @@ pub async fn simulate_machines<E: Evaluator>(
         return Ok(simulated);
     };
     let Some(neighbours) = estimate.neighbours else {
-        simulated.noise_ratio = Some(estimate.noise_ratio);
+        simulated.notes.push(format!(
+            "there are no intervals: the fit leaves {:.1} times the noise, so that its numbers are not those of the \
+             machine; `horsehead diagnose` finds what the model lacks",
+            estimate.noise_ratio
+        ));
         return Ok(simulated);
     };
     let individuals = (1..).zip(&neighbours.individuals);
     let individuals: Vec<NamedIndividual> = individuals
         .map(|(number, genes)| NamedIndividual::new(format!("neighbour {number}"), genes.clone()))
         .collect();
-    let beside = simulate(evaluator, case, conditions, (position, individuals), stop).await?;
-    simulated.beside = Some((neighbours, beside));
+    let beside = simulate(
+        evaluator,
+        &target.case,
+        wanted,
+        (position, individuals),
+        stop,
+    )
+    .await?;
+    match beside.into_iter().collect::<Result<Vec<_>, Problem>>() {
+        Ok(beside) => simulated.beside = Some((neighbours, beside)),
+        Err(problem) => {
+            let note = format!("there are no intervals: {}", problem.message);
+            simulated.notes.push(note);
+        }
+    }
     Ok(simulated)
 }
 
-/// Simulates individuals under several conditions, the first of them in a position of its own among those of the run.
+/// Simulates individuals under several conditions, with a number of snapshots, the first of them in a position of its own
+/// among those of the run. A machine that does not complete is an error of its own.
 async fn simulate<E: Evaluator>(
     evaluator: &mut E,
     case: &Case,
-    conditions: &[usize],
+    (conditions, frames): (&[usize], u32),
     (first, individuals): (usize, Vec<NamedIndividual>),
     stop: &mut Stop,
-) -> anyhow::Result<Vec<SimulatedMachine>> {
+) -> anyhow::Result<Vec<Result<SimulatedMachine, Problem>>> {
     let request = |&condition: &usize| CompareRequest {
         condition,
         first,
         individuals: individuals.clone(),
-        frames: 0,
+        frames,
         columns: Vec::new(),
     };
     let wanted: Vec<CompareRequest> = conditions.iter().map(request).collect();
     let groups = study::compare(evaluator, case, &wanted, stop).await?;
     let machines = individuals.iter().enumerate();
-    machines
-        .map(|(k, own)| {
-            Ok(SimulatedMachine {
-                name: own.name.clone(),
-                curves: curves(case, &groups, k)?,
-            })
+    let machine = |(k, own): (usize, &NamedIndividual)| {
+        Ok(SimulatedMachine {
+            name: own.name.clone(),
+            curves: curves(case, &groups, k)?,
         })
-        .collect()
+    };
+    Ok(machines.map(machine).collect())
 }
 
 /// Collects the curves of individual `k` under all conditions.
 ///
 /// # Errors
 /// If a simulation ended early.
-pub fn curves(case: &Case, groups: &[Compared], k: usize) -> anyhow::Result<Vec<Curves>> {
+pub fn curves(case: &Case, groups: &[Compared], k: usize) -> Result<Vec<Curves>, Problem> {
     let each = groups
         .iter()
         .filter_map(|group| Some((group, group.individuals.get(k)?)));
@@ -413,8 +452,7 @@ pub fn curves(case: &Case, groups: &[Compared], k: usize) -> anyhow::Result<Vec<
             remedy:
                 "an assessment needs a whole revolution; `horsehead simulate` shows how far it came"
                     .to_owned(),
-        }
-        .into())
+        })
     });
     complete.collect()
 }

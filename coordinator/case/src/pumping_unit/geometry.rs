@@ -122,8 +122,6 @@ fn solve_loop(
 pub struct QuasiStaticTurn {
     /// Crank angle from bottom dead centre \[deg\].
     pub turn_deg: Vec<f64>,
-    /// Angle of the crank pin at bottom dead centre, counter-clockwise from +x \[deg\].
-    pub bottom_deg: f64,
     /// Angle at which the rope leaves the back head, beam frame \[deg\].
     pub contact_deg: Vec<f64>,
     /// Rope tension \[N\].
@@ -136,11 +134,6 @@ const SAMPLES: u32 = 720;
 /// Returns beam angle and contact normal \[rad\] at equally spaced crank angles from bottom dead centre, where
 /// the front arm is lowest; `None` if the crank cannot complete a turn.
 fn turn_from_bottom(crank: &Crank, head: &BackHead, length: f64) -> Option<Vec<[f64; 2]>> {
-    Some(turn_with_bottom(crank, head, length)?.1)
-}
-
-/// Returns what [`turn_from_bottom`] does, after the angle of the crank pin at bottom dead centre \[rad\].
-fn turn_with_bottom(crank: &Crank, head: &BackHead, length: f64) -> Option<(f64, Vec<[f64; 2]>)> {
     let sense = match crank.sense {
         TurnSense::Clockwise => -1.0,
         TurnSense::CounterClockwise => 1.0,
@@ -162,8 +155,7 @@ fn turn_with_bottom(crank: &Crank, head: &BackHead, length: f64) -> Option<(f64,
     let [before, here, after] = [first[(low + n - 1) % n], first[low], first[(low + 1) % n]];
     let bend = before[0] - 2.0 * here[0] + after[0];
     let shift = 0.5 * (before[0] - after[0]) / bend;
-    let bottom = sense * step * (low as f64 + shift);
-    Some((bottom, turn(bottom, here)?))
+    turn(sense * step * (low as f64 + shift), here)
 }
 
 /// Returns the position of the polished rod above its lowest one \[m\] at equally spaced crank angles from
@@ -187,14 +179,11 @@ pub(super) fn rod_position(case: &CaseFile) -> Option<Vec<f64>> {
 pub fn quasi_static(machine: &Machine, condition: &WorkingCondition) -> Option<QuasiStaticTurn> {
     let length = machine.ropes.back_cylinders as f64 * machine.ropes.cylinder_length_m
         + machine.rod.length_m;
-    let (bottom, angles) = turn_with_bottom(&machine.crank, &machine.back_head, length)?;
+    let angles = turn_from_bottom(&machine.crank, &machine.back_head, length)?;
     let n = angles.len();
     let step = std::f64::consts::TAU / f64::from(SAMPLES);
     let speed = condition.speed_rpm * std::f64::consts::TAU / 60.0;
-    let mut result = QuasiStaticTurn {
-        bottom_deg: bottom.to_degrees(),
-        ..QuasiStaticTurn::default()
-    };
+    let mut result = QuasiStaticTurn::default();
     for (k, [theta, normal]) in angles.iter().enumerate() {
         let neighbours = angles[(k + n - 1) % n][0] + angles[(k + 1) % n][0];
         let acceleration = (neighbours - 2.0 * theta) / (step * step) * speed * speed;

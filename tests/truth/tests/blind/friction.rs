@@ -60,6 +60,38 @@ fn after(curves: &Path, condition: &str) -> [Vec<f64>; 4] {
     gauges
 }
 
+/// Checks that the balance of the diagnosis compares the machine with and without the friction, which costs its work over
+/// two swings of the beam in each revolution, and that the report of the diagnosis shows it.
+fn friction_costs_its_work(trial: &Trial, whole: &Value) {
+    let balance = run(&mut trial.horsehead(&["balance", "run", "--output", "json"]));
+    let balance: Value = serde_json::from_str(&balance).expect("an object");
+    let variants = balance["variants"].as_array().expect("machines");
+    let names: Vec<&str> = variants
+        .iter()
+        .filter_map(|own| own["name"].as_str())
+        .collect();
+    let expected = [
+        "recommended",
+        "recalibrated",
+        "diagnosed without pivot_friction",
+        "diagnosed",
+    ];
+    assert_eq!(names, expected);
+    let energy = |own: &Value| {
+        let energy = &own["conditions"][0]["energy_kwh_per_day"]["value"];
+        energy.as_f64().expect("an energy")
+    };
+    let cost = energy(&variants[3]) - energy(&variants[2]);
+    let moment = &whole["effects"][0]["parameters"]["moment"]["value"];
+    // 63.7 deg twice in each of 7,200 revolutions
+    let work = moment.as_f64().expect("a moment") * 2.0 * 1.111 * 7200.0 / 3.6e6;
+    eprintln!("{cost} kWh a day, {work} by Coulomb's law");
+    assert!((0.5..2.0).contains(&(cost / work)), "{cost} {work}");
+    run(&mut trial.horsehead(&["report", "run", "--output", "json"]));
+    let page = fs::read_to_string(trial.at("run/report.html")).expect("a page");
+    assert!(page.contains("id=\"balance\""));
+}
+
 #[test]
 fn a_strong_friction_is_named_added_told_again_and_simulated_with_the_same_numbers() {
     let trial = Trial::make(&FRICTION);
@@ -108,6 +140,8 @@ fn a_strong_friction_is_named_added_told_again_and_simulated_with_the_same_numbe
         )),
         whole
     );
+
+    friction_costs_its_work(&trial, &whole);
 
     // with the step of the diagnosis, and the instruments off by what it says, a simulation of the case is
     // its "after": rounded as channels of a diagnosis are

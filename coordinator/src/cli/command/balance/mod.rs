@@ -15,12 +15,12 @@ use crate::cli::{
     output::{problem::EXIT_CODES, progress::StageDisplay, terminal},
 };
 use anyhow::Context as _;
-use case::pumping_unit::quasi_static;
 use clap::Args;
 use options::{BalanceOptions, BalancePlan};
+use output::resampled;
 use protocol::{
     case::Case,
-    pumping_unit::{PumpingUnit, Simulation},
+    pumping_unit::{Machine, PumpingUnit, Simulation, TurnSense},
 };
 use report::{MachineAssessment, Topic, pumping_unit::crank_balance, text, write_report};
 use run::{
@@ -31,11 +31,11 @@ use run::{
     message,
     session::{Session, temporary::with_temporary_run},
 };
-use std::path::PathBuf;
+use std::{f64::consts::TAU, path::PathBuf};
 use study::CompareRequest;
 use summary::{AssessedCrank, states};
 use support::Problem;
-use torque::{Counterweight, PinAngle, Revolution};
+use torque::{Bounds, Counterweight, Revolution};
 
 /// Compare the crank's torque with the reducer's rating, and find the counterweight that lowers it.
 #[derive(Debug, Args)]
@@ -71,7 +71,9 @@ pub(super) struct Arguments {
 /// Simulations of an optimum by which the next one is sought, at most: where the motor slips, the counterweight changes
 /// the motion.
 const MOST_REPETITIONS: usize = 3;
-/// Relative change of the optimal moment below which it is not sought again.
+/// Snapshots of the motion per revolution, from which the angle of the crank pin is taken.
+const SNAPSHOTS: u32 = 36;
+/// Relative change of the optimal moment, and change of the phase in radians, below which it is not sought again.
 const SETTLED: f64 = 1e-3;
 
 /// Simulates the conditions, seeks the counterweight, simulates it, writes the report and prints the result.
@@ -89,26 +91,28 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let options = arguments.workers.session()?;
     let simulated = session.work(&run, &options, async |dispatch, stop| {
         let mut display = StageDisplay::new();
-        let simulated = simulate_machines(dispatch, &target, &conditions, &mut display, stop).await;
+        let simulated = simulate_machines(
+            dispatch,
+            &target,
+            (&conditions, SNAPSHOTS),
+            &mut display,
+            stop,
+        )
+        .await;
         display.clear();
         simulated
     })?;
-    let pin = pin_angle(&unit)?;
-    let assessed = assess((&unit, &plan), pin, &simulated)?;
+    let assessed = assess((&unit, &plan), &simulated)?;
     let present = assessed.last().context("no machine is compared")?;
-    let (optimum, revolutions) = optimum(
-        (&unit, &target, &plan),
-        pin,
-        &simulated,
-        options.local_workers,
-    )?;
-    let mut notes = output::notes(&target.case, &plan, present, &optimum);
-    notes.extend(simulated.noise_ratio.map(|ratio| {
-        format!(
-            "the numbers have no interval: the fit leaves {ratio:.1} times the noise, so that its numbers are not those of \
-             the machine; `horsehead diagnose` finds what the model lacks"
-        )
-    }));
+    let (optimum, revolutions) =
+        optimum((&unit, &target, &plan), &simulated, options.local_workers)?;
+    let mut notes = output::notes(
+        (&target.case, target.run.is_some()),
+        &plan,
+        present,
+        &optimum,
+    );
+    notes.extend(simulated.notes);
     let picture = output::picture(
         (&target.case, &unit.machine),
         (&plan, &revolutions),
@@ -149,29 +153,53 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     terminal::print(arguments.output.output, tables, &object)
 }
 
-/// Returns the angle of the crank pin of a machine.
-fn pin_angle(unit: &PumpingUnit) -> anyhow::Result<PinAngle> {
-    let condition = &unit.machine.conditions[unit.case.objective.condition];
-    let turn = quasi_static(&unit.machine, condition)
-        .context("the crank of this case cannot complete a revolution")?;
-    Ok(PinAngle {
-        bottom_deg: turn.bottom_deg,
-        sense: unit.machine.crank.sense,
-    })
+/// Returns the angle of the crank pin at each sample of a simulation \[rad\], from its recorded motion: where the motor slips
+/// or the index pulse is late, the pin is ahead of the crank angle of the record.
+fn pin_rad(machine: &Machine, simulation: &Simulation) -> Vec<f64> {
+    let crank = &machine.crank;
+    let ahead = simulation.motion.iter().map(|snapshot| {
+        let [x, y] = snapshot.crank_pin_m.map(f64::from);
+        let angle = libm::atan2(y - crank.center_y_m, x - crank.center_x_m);
+        angle - sense(machine) * snapshot.turn_deg.to_radians()
+    });
+    let ahead: Vec<f64> = ahead.collect();
+    let first = ahead.first().copied().unwrap_or(f64::NAN);
+    // it changes by some degrees, and by no whole turn
+    let ahead = ahead.iter().map(|angle| {
+        let change = angle - first;
+        first + change - TAU * (change / TAU).round()
+    });
+    let ahead: Vec<f64> = ahead.collect();
+    let at = simulation.motion.iter().map(|own| own.turn_deg);
+    let at: Vec<f64> = at.collect();
+    let at_samples = resampled((&at, &ahead), &simulation.turn_deg);
+    let both = simulation.turn_deg.iter().zip(at_samples);
+    both.map(|(turn, ahead)| ahead + sense(machine) * turn.to_radians())
+        .collect()
+}
+
+/// Returns 1 for a crank that turns counter-clockwise, -1 for one that turns clockwise.
+const fn sense(machine: &Machine) -> f64 {
+    match machine.crank.sense {
+        TurnSense::Clockwise => -1.0,
+        TurnSense::CounterClockwise => 1.0,
+    }
 }
 
 /// Returns the revolutions of a machine under the conditions of a plan, with the counterweight of each.
 fn revolutions(
+    machine: &Machine,
     plan: &BalancePlan,
-    pin: PinAngle,
     weights: &[Counterweight],
     simulations: &[Simulation],
 ) -> Vec<Revolution> {
     let hours: f64 = plan.operations.iter().map(|own| own.hours_per_day).sum();
     let each = plan.operations.iter().zip(weights).zip(simulations);
     each.map(|((operation, weight), simulation)| {
-        let curve = (&simulation.turn_deg[..], &simulation.crank_torque_n_m[..]);
-        Revolution::new(curve, pin, *weight, operation.hours_per_day / hours)
+        let pin = pin_rad(machine, simulation);
+        let curve = (&pin[..], &simulation.crank_torque_n_m[..]);
+        let share = operation.hours_per_day / hours;
+        Revolution::new(curve, sense(machine), *weight, share)
     })
     .collect()
 }
@@ -185,19 +213,24 @@ fn decoded(machine: &SimulatedMachine) -> anyhow::Result<Vec<Simulation>> {
 /// Assesses every machine with the present counterweight; the last of those that are compared with its intervals.
 fn assess(
     (unit, plan): (&PumpingUnit, &BalancePlan),
-    pin: PinAngle,
     simulated: &SimulatedMachines,
 ) -> anyhow::Result<Vec<AssessedCrank>> {
-    let of_machine = |machine: &SimulatedMachine| -> anyhow::Result<AssessedCrank> {
-        let simulations = decoded(machine)?;
-        let all = revolutions(plan, pin, &plan.present, &simulations);
-        let states = states(&unit.machine, plan, (&plan.present, &all), &simulations);
-        let best = plan.goal.best(&all, &plan.bounds);
-        Ok(AssessedCrank::new(&machine.name, states, best))
-    };
+    let of_machine =
+        |machine: &SimulatedMachine, bounds: &Bounds| -> anyhow::Result<AssessedCrank> {
+            let simulations = decoded(machine)?;
+            let all = revolutions(&unit.machine, plan, &plan.present, &simulations);
+            let states = states(&unit.machine, plan, (&plan.present, &all), &simulations);
+            let best = plan.goal.best(&all, bounds);
+            Ok(AssessedCrank::new(&machine.name, states, best))
+        };
     let beside = match &simulated.beside {
         Some((neighbours, machines)) => {
-            let machines = machines.iter().map(&of_machine);
+            // a step would hide how the best moment changes
+            let anywhere = Bounds {
+                step_n_m: None,
+                ..plan.bounds.clone()
+            };
+            let machines = machines.iter().map(|own| of_machine(own, &anywhere));
             Some((neighbours, machines.collect::<anyhow::Result<Vec<_>>>()?))
         }
         None => None,
@@ -205,9 +238,11 @@ fn assess(
     let last = simulated.compared.len().saturating_sub(1);
     let each = simulated.compared.iter().enumerate();
     each.map(|(k, machine)| {
-        let crank = of_machine(machine)?;
+        let crank = of_machine(machine, &plan.bounds)?;
         Ok(match &beside {
-            Some((neighbours, beside)) if k == last => crank.with_intervals(neighbours, beside),
+            Some((neighbours, beside)) if k == last => {
+                crank.with_intervals(neighbours, beside, &plan.bounds)
+            }
             _ => crank,
         })
     })
@@ -218,7 +253,6 @@ fn assess(
 /// both. Returns its state under each condition, and the revolutions by which it was found.
 fn optimum(
     (unit, target, plan): (&PumpingUnit, &AssessmentTarget, &BalancePlan),
-    pin: PinAngle,
     simulated: &SimulatedMachines,
     workers: usize,
 ) -> anyhow::Result<(AssessedCrank, Vec<Revolution>)> {
@@ -226,15 +260,16 @@ fn optimum(
         .compared
         .last()
         .context("no machine is compared")?;
-    let mut all = revolutions(plan, pin, &plan.present, &decoded(machine)?);
+    let mut all = revolutions(&unit.machine, plan, &plan.present, &decoded(machine)?);
     let mut best = plan.goal.best(&all, &plan.bounds);
     for repetition in 1.. {
         let weights = vec![best; plan.operations.len()];
         let simulations = simulate_with(unit, target, plan, best, workers)?;
-        all = revolutions(plan, pin, &weights, &simulations);
+        all = revolutions(&unit.machine, plan, &weights, &simulations);
         let next = plan.goal.best(&all, &plan.bounds);
         let moved = (next.moment_n_m - best.moment_n_m).abs() / best.moment_n_m.max(1.0);
-        if moved < SETTLED || repetition == MOST_REPETITIONS {
+        let turned = (next.phase_deg - best.phase_deg).to_radians().abs();
+        if moved.max(turned) < SETTLED || repetition == MOST_REPETITIONS {
             let states = states(&unit.machine, plan, (&weights, &all), &simulations);
             return Ok((AssessedCrank::new("optimum", states, best), all));
         }
@@ -263,7 +298,7 @@ fn simulate_with(
         condition: own.condition,
         first: 0,
         individuals: vec![individual.clone()],
-        frames: 0,
+        frames: SNAPSHOTS,
         columns: Vec::new(),
     };
     let wanted: Vec<CompareRequest> = plan.operations.iter().map(request).collect();

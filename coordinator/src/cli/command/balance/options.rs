@@ -107,6 +107,13 @@ impl BalanceOptions {
             }
             (None, None) => (0.0..=2.0 * most, "the default"),
         };
+        if *moment_n_m.end() <= 0.0 {
+            return Err(Problem {
+                message: "the case has no counterweight, `counterweight_moment_n_m` is 0"
+                    .to_owned(),
+                remedy: "say which moments are possible, as in --moment 0..120e3".to_owned(),
+            });
+        }
         if *moment_n_m.start() < 0.0 {
             return Err(Problem {
                 message: format!("--moment begins at {} N.m", moment_n_m.start()),

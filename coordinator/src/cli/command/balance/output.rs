@@ -54,17 +54,22 @@ pub(super) fn lead(plan: &BalancePlan, present: &AssessedCrank, optimum: &Assess
 
 /// Returns what a reader must know beside the numbers.
 pub(super) fn notes(
-    case: &Case,
+    (case, of_run): (&Case, bool),
     plan: &BalancePlan,
     present: &AssessedCrank,
     optimum: &AssessedCrank,
 ) -> Vec<String> {
     let mut notes = Vec::new();
     if plan.rating_n_m.is_none() {
-        notes.push(
-            "the case states no rating of its reducer: `reducer_rating_n_m` in [crank], or --rating"
-                .to_owned(),
-        );
+        // a run belongs to its case as it is
+        let remedy = if of_run {
+            ""
+        } else {
+            "`reducer_rating_n_m` in [crank], or "
+        };
+        notes.push(format!(
+            "the case states no rating of its reducer: {remedy}--rating"
+        ));
     }
     let moments = plan.present.iter().map(|own| own.moment_n_m);
     let first = plan.present.first().map_or(0.0, |own| own.moment_n_m);
@@ -76,14 +81,23 @@ pub(super) fn notes(
             "the conditions have counterweight moments of their own; the best one is common to all of them".to_owned(),
         );
     }
-    let ends = [plan.bounds.moment_n_m.start(), plan.bounds.moment_n_m.end()];
-    let at_bound = |end: &&f64| (optimum.best.moment_n_m - **end).abs() < 1e-6 * end.abs().max(1.0);
-    if let Some(end) = ends.into_iter().find(at_bound) {
+    if plan.bounds.step_n_m.is_none() && plan.bounds.ends_at(optimum.best.moment_n_m) {
         notes.push(format!(
             "the best moment, {:.1} kN.m, is the end of those that are possible: beyond it the {} would be less",
-            KILO * end,
+            KILO * optimum.best.moment_n_m,
             plan.goal.name()
         ));
+    }
+    if case
+        .effects
+        .iter()
+        .any(|own| own.id == "counterweight_phase")
+    {
+        notes.push(
+            "the effect counterweight_phase changes the speed of the crank alone: its phase and moment are not in the \
+             present counterweight"
+                .to_owned(),
+        );
     }
     let [before, after] = [present, optimum].map(|own| goal_of(Goal::Peak, plan, &own.states));
     if plan
@@ -122,7 +136,7 @@ fn measured(case: &Case, condition: usize) -> Option<(&[f64], &[f64])> {
 }
 
 /// Returns the values of a periodic curve at other crank angles.
-fn resampled((at, values): (&[f64], &[f64]), turn_deg: &[f64]) -> Vec<f64> {
+pub(super) fn resampled((at, values): (&[f64], &[f64]), turn_deg: &[f64]) -> Vec<f64> {
     let value = |turn: &f64| {
         let next = at.partition_point(|own| own <= turn);
         let (before, after) = ((next + at.len() - 1) % at.len(), next % at.len());
@@ -312,17 +326,14 @@ fn practice(machine: &Machine, plan: &BalancePlan, optimum: &AssessedCrank) -> T
                 format!("{:+.2}", optimum.best.phase_deg - present.phase_deg),
             ];
             let weights = machine.crank.counterweights.as_ref();
-            cells.extend(match weights {
-                Some(weights) => {
-                    let own = Move::of(weights, machine.gravity_m_s2, *present, change);
-                    [
-                        format!("{:.0}", 1e3 * own.radius_m),
-                        format!("{:+.0}", 1e3 * own.by_m),
-                        format!("{:+.0}", own.mass_kg),
-                    ]
-                }
-                None => [const { String::new() }; 3],
-            });
+            let own = weights.and_then(|own| Move::of(own, machine.gravity_m_s2, *present, change));
+            cells.extend(own.map_or([const { String::new() }; 3], |own| {
+                [
+                    format!("{:.0}", 1e3 * own.radius_m),
+                    format!("{:+.0}", 1e3 * own.by_m),
+                    format!("{:+.0}", own.mass_kg),
+                ]
+            }));
             Row::new(operation.name.clone(), cells)
         });
     let head = [
@@ -351,14 +362,20 @@ struct Move {
 }
 
 impl Move {
-    fn of(weights: &Counterweights, gravity: f64, present: Counterweight, change: f64) -> Self {
+    /// Returns the move for a change of the moment; `None` where the present moment is not that of the stated weights.
+    fn of(
+        weights: &Counterweights,
+        gravity: f64,
+        present: Counterweight,
+        change: f64,
+    ) -> Option<Self> {
         let weight = f64::from(weights.count) * weights.mass_kg * gravity;
         let radius_m = (present.moment_n_m - weights.crank_moment_n_m) / weight;
-        Self {
+        (radius_m > 0.0 && radius_m.is_finite()).then(|| Self {
             radius_m,
             by_m: change / weight,
             mass_kg: change / (gravity * radius_m),
-        }
+        })
     }
 }
 
@@ -499,7 +516,7 @@ pub(super) fn object(
         .map(|(operation, present)| {
             let change = optimum.best.moment_n_m - present.moment_n_m;
             let own = machine.crank.counterweights.as_ref();
-            let own = own.map(|own| Move::of(own, machine.gravity_m_s2, *present, change));
+            let own = own.and_then(|own| Move::of(own, machine.gravity_m_s2, *present, change));
             json!({
                 "condition": operation.name,
                 "moment_n_m": change,

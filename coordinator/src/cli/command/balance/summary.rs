@@ -1,7 +1,7 @@
 //! Torque and power of a crank over a revolution, in the numbers by which a reducer and a motor are chosen.
 use super::{
     options::BalancePlan,
-    torque::{Counterweight, Goal, Revolution, mean_square},
+    torque::{Bounds, Counterweight, Goal, Revolution, mean_square},
 };
 use discrepancy::identify::Neighbours;
 use protocol::pumping_unit::{Machine, Simulation};
@@ -20,6 +20,7 @@ pub(super) struct State {
     pub(super) most_n_m: f64,
     pub(super) least_n_m: f64,
     pub(super) rms_n_m: f64,
+    /// Work of a revolution over its angle [N m].
     pub(super) mean_n_m: f64,
     /// Share of the revolution in which the magnitude exceeds the rating; `None` without a rating.
     pub(super) above_rating: Option<f64>,
@@ -76,7 +77,16 @@ impl AssessedCrank {
     }
 
     /// Returns the crank with intervals from the states and the best counterweights of the machines beside it.
-    pub(super) fn with_intervals(self, neighbours: &Neighbours, beside: &[Self]) -> Self {
+    pub(super) fn with_intervals(
+        self,
+        neighbours: &Neighbours,
+        beside: &[Self],
+        bounds: &Bounds,
+    ) -> Self {
+        // at a bound the best moment does not follow the unknowns
+        let inside = beside
+            .iter()
+            .all(|own| !bounds.ends_at(own.best.moment_n_m));
         let half = |of: &dyn Fn(&Self) -> f64| {
             neighbours.half_width(&beside.iter().map(of).collect::<Vec<_>>())
         };
@@ -90,7 +100,7 @@ impl AssessedCrank {
         Self {
             intervals: Some(Intervals {
                 states: states.collect(),
-                moment_n_m: half(&|own| own.best.moment_n_m),
+                moment_n_m: half(&|own| own.best.moment_n_m).filter(|_| inside),
             }),
             ..self
         }
@@ -129,7 +139,8 @@ pub(super) fn states(
             };
             let fold = |of: fn(f64, f64) -> f64| torque_n_m.iter().copied().reduce(of);
             let most = fold(f64::max).unwrap_or(f64::NAN);
-            let mean = torque_n_m.iter().sum::<f64>() / count;
+            // of the work of a revolution, which is not that of the mean over time where the crank's speed changes
+            let work = simulation.energy.input_j;
             let least = fold(f64::min).unwrap_or(f64::NAN);
             State {
                 weight: *weight,
@@ -137,14 +148,14 @@ pub(super) fn states(
                 most_n_m: most,
                 least_n_m: least,
                 rms_n_m: mean_square(&torque_n_m).sqrt(),
-                mean_n_m: mean,
+                mean_n_m: work / TAU,
                 above_rating: plan
                     .rating_n_m
                     .map(|rating| share(&|torque| torque.abs() > rating)),
                 below_zero: share(&|torque| torque < 0.0),
                 peak_power_w: speed * most,
-                mean_power_w: speed * mean,
-                energy_kwh_per_day: TAU * mean * operation.revolutions_per_day / KILOWATT_HOUR,
+                mean_power_w: speed * work / TAU,
+                energy_kwh_per_day: work * operation.revolutions_per_day / KILOWATT_HOUR,
                 counterbalance_n: counterbalance(&revolution.of_weight(*weight), simulation, speed),
                 torque_n_m,
             }

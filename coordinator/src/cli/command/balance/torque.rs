@@ -2,8 +2,7 @@
 //!
 //! The crank's motion is prescribed, so that the torque is that of everything else plus that of the counterweight: with
 //! moment `M`, phase `tau`, pin angle `p` and sense of rotation `s`, `T = T_0 + s M cos(p + s tau)`. It is linear in `M cos
-//! tau` and `M sin tau`, and its mean does not depend on the counterweight.
-use protocol::pumping_unit::TurnSense;
+//! tau` and `M sin tau`.
 use std::ops::RangeInclusive;
 
 /// Moment and phase of a counterweight.
@@ -32,6 +31,15 @@ pub(super) struct Bounds {
     pub(super) step_n_m: Option<f64>,
 }
 
+impl Bounds {
+    /// Returns whether a moment is one of the ends of those that are possible.
+    pub(super) fn ends_at(&self, moment_n_m: f64) -> bool {
+        let (low, high) = (*self.moment_n_m.start(), *self.moment_n_m.end());
+        let near = |end: f64| (moment_n_m - end).abs() <= 1e-6 * high;
+        near(low) || near(high)
+    }
+}
+
 /// Torque over one revolution under one condition.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Revolution {
@@ -43,32 +51,18 @@ pub(super) struct Revolution {
     per_moment: Vec<[f64; 2]>,
 }
 
-/// Angle of the crank pin: at bottom dead centre, and the sense in which it turns.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct PinAngle {
-    pub(super) bottom_deg: f64,
-    pub(super) sense: TurnSense,
-}
-
 impl Revolution {
-    /// Separates the torque [N m] over crank angles \[deg\] into that of the counterweight with which it was simulated and
-    /// the rest.
+    /// Separates a torque [N m] at angles of the crank pin \[rad\] into that of the counterweight with which it was simulated
+    /// and the rest.
     pub(super) fn new(
-        (turn_deg, torque_n_m): (&[f64], &[f64]),
-        pin: PinAngle,
+        (pin_rad, torque_n_m): (&[f64], &[f64]),
+        sense: f64,
         present: Counterweight,
         share: f64,
     ) -> Self {
-        let sense = match pin.sense {
-            TurnSense::Clockwise => -1.0,
-            TurnSense::CounterClockwise => 1.0,
-        };
-        let per_moment: Vec<[f64; 2]> = turn_deg
+        let per_moment: Vec<[f64; 2]> = pin_rad
             .iter()
-            .map(|turn| {
-                let angle = (pin.bottom_deg + sense * turn).to_radians();
-                [sense * libm::cos(angle), -libm::sin(angle)]
-            })
+            .map(|angle| [sense * libm::cos(*angle), -libm::sin(*angle)])
             .collect();
         let [along, across] = components(present);
         let both = torque_n_m.iter().zip(&per_moment);
@@ -234,24 +228,27 @@ pub(super) fn mean_square(values: &[f64]) -> f64 {
 mod tests {
     use super::*;
 
+    /// Returns the angles of a pin that turns clockwise from 87 deg.
+    fn pin_rad() -> Vec<f64> {
+        let each = (0..720).map(|k| (87.0 - 0.5 * f64::from(k)).to_radians());
+        each.collect()
+    }
+
     /// Builds a revolution with harmonics that no counterweight balances, and a first one that the given one does.
     fn revolution(balanced_by: Counterweight, share: f64) -> Revolution {
         let turn: Vec<f64> = (0..720).map(|k| 0.5 * f64::from(k)).collect();
-        let pin = PinAngle {
-            bottom_deg: 87.0,
-            sense: TurnSense::Clockwise,
-        };
+        let pin = pin_rad();
         let nothing = Counterweight {
             moment_n_m: 0.0,
             phase_deg: 0.0,
         };
-        let weight = Revolution::new((&turn, &vec![0.0; 720]), pin, nothing, 1.0);
+        let weight = Revolution::new((&pin, &vec![0.0; 720]), -1.0, nothing, 1.0);
         let weight = weight.of_weight(balanced_by);
         let torque = turn.iter().zip(weight).map(|(turn, weight)| {
             let angle = turn.to_radians();
             14e3 + 9e3 * (2.0 * angle + 0.3).cos() + 4e3 * (3.0 * angle).sin() - weight
         });
-        Revolution::new((&turn, &torque.collect::<Vec<_>>()), pin, nothing, share)
+        Revolution::new((&pin, &torque.collect::<Vec<_>>()), -1.0, nothing, share)
     }
 
     const FREE: Bounds = Bounds {
@@ -342,12 +339,8 @@ mod tests {
             phase_deg: 4.0,
         };
         let own = revolution(weight, 1.0);
-        let turn: Vec<f64> = (0..720).map(|k| 0.5 * f64::from(k)).collect();
-        let pin = PinAngle {
-            bottom_deg: 87.0,
-            sense: TurnSense::Clockwise,
-        };
-        let again = Revolution::new((&turn, &own.with(weight)), pin, weight, 1.0);
+        let pin = pin_rad();
+        let again = Revolution::new((&pin, &own.with(weight)), -1.0, weight, 1.0);
         for (a, b) in again.rest_n_m.iter().zip(&own.rest_n_m) {
             assert!((a - b).abs() < 1e-9);
         }

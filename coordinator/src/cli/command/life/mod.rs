@@ -19,7 +19,7 @@ use clap::Args;
 use options::{LifeOptions, LifePlan};
 use protocol::{
     case::Case,
-    pumping_unit::{PumpingUnit, Simulation},
+    pumping_unit::{Machine, PumpingUnit, Simulation},
     wire::WireError,
 };
 use report::{
@@ -86,7 +86,10 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     }
     let spec = head.as_ref();
     let spec = spec
-        .map(|(read, source)| super::head::surface_spec(read, source))
+        .map(|(read, source)| {
+            same_head(&read.machine, &unit.machine)?;
+            super::head::surface_spec(&unit, source)
+        })
         .transpose()?;
     let conditions: Vec<usize> = plan.conditions().collect();
     let run = target.begin(arguments.run.as_deref(), LifeSettings)?;
@@ -100,7 +103,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
                 None => None,
             };
             let simulated =
-                simulate_machines(dispatch, &target, &conditions, &mut display, stop).await;
+                simulate_machines(dispatch, &target, (&conditions, 0), &mut display, stop).await;
             display.clear();
             Ok((reduced, simulated?))
         },
@@ -119,12 +122,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
                 .to_owned(),
         );
     }
-    notes.extend(simulated.noise_ratio.map(|ratio| {
-        format!(
-            "lives have no interval: the fit leaves {ratio:.1} times the noise, so that its numbers are not those of the \
-             machine; `horsehead diagnose` finds what the model lacks"
-        )
-    }));
+    notes.extend(simulated.notes);
     let assessment = MachineAssessment {
         topic: Topic::Life,
         lead: output::lead(&plan, &assessed),
@@ -204,6 +202,24 @@ fn figures(
         gauges: &source.gauges,
         spots_m: &spots.collect::<Vec<_>>(),
         sectors: &sectors.collect::<Vec<_>>(),
+    })
+}
+
+/// Checks that the machine of the case folder, whose mesh is used, is that of the run but for its load cards.
+fn same_head(of_case: &Machine, of_run: &Machine) -> Result<(), Problem> {
+    let without_conditions = |machine: &Machine| Machine {
+        conditions: Vec::new(),
+        ..machine.clone()
+    };
+    if without_conditions(of_case) == without_conditions(of_run) {
+        return Ok(());
+    }
+    Err(Problem {
+        message: "the machine of the case has changed since the run was begun, and the mesh of the head with it, perhaps"
+            .to_owned(),
+        remedy: "restore the case, or name the case with the parameters of the run: horsehead life CASE --genes \
+                 RUN/calibrated.toml"
+            .to_owned(),
     })
 }
 

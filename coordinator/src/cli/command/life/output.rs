@@ -292,21 +292,21 @@ pub(super) fn tables(plan: &LifePlan, assessed: &[AssessedVariant]) -> Vec<Table
     tables
 }
 
-/// Builds the table of the shortest life of each variant.
+/// Builds the table of the shortest life of each variant: on the surface, else at the gauges.
 fn by_parameters(assessed: &[AssessedVariant]) -> Table {
     let rows = assessed.iter().map(|own| {
-        let shortest = own.hot_spots.first();
-        let cell = |text: &dyn Fn(&HotSpot) -> String| shortest.map_or_else(String::new, text);
-        let place = |own: &HotSpot| {
-            own.bearing.map_or_else(String::new, |own| {
+        let gauges = (1..).zip(&own.gauges);
+        let gauge = gauges.min_by(|a, b| a.1.years.total_cmp(&b.1.years));
+        let shortest = own.hot_spots.first().map(|spot| {
+            let place = spot.bearing.map_or_else(String::new, |own| {
                 format!("pin {}, {:.0} deg", own.pin, own.angle_deg)
-            })
-        };
-        let cells = [
-            cell(&place),
-            cell(&|own| format!("{:.1}", own.life.range_mpa)),
-            cell(&|own| years(own.life.years)),
-        ];
+            });
+            (place, &spot.life)
+        });
+        let shortest = shortest.or(gauge.map(|(number, life)| (format!("gauge {number}"), life)));
+        let cells = shortest.map_or([const { String::new() }; 3], |(place, life)| {
+            [place, format!("{:.1}", life.range_mpa), years(life.years)]
+        });
         Row::new(own.name.clone(), cells)
     });
     let head = ["", "worst place", "range MPa", "life years"];
