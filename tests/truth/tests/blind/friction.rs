@@ -85,7 +85,6 @@ fn friction_costs_its_work(trial: &Trial, whole: &Value) {
     let moment = &whole["effects"][0]["parameters"]["moment"]["value"];
     // 63.7 deg twice in each of 7,200 revolutions
     let work = moment.as_f64().expect("a moment") * 2.0 * 1.111 * 7200.0 / 3.6e6;
-    eprintln!("{cost} kWh a day, {work} by Coulomb's law");
     assert!((0.5..2.0).contains(&(cost / work)), "{cost} {work}");
     run(&mut trial.horsehead(&["report", "run", "--output", "json"]));
     let page = fs::read_to_string(trial.at("run/report.html")).expect("a page");
