@@ -50,7 +50,7 @@ pub(super) struct LifeOptions {
         long,
         value_name = "F",
         default_value_t = 1.0,
-        env = "HORSEHEAD_STRESS_FACTOR"
+        env = "HORSEHEAD_FACTOR"
     )]
     factor: f64,
     /// Life for which the load factor is given \[years\].
