@@ -140,7 +140,7 @@ pub(super) fn states(
             let fold = |of: fn(f64, f64) -> f64| torque_n_m.iter().copied().reduce(of);
             let most = fold(f64::max).unwrap_or(f64::NAN);
             // of the work of a revolution, which is not that of the mean over time where the crank's speed changes
-            let work = simulation.energy.input_j;
+            let work = revolution.work_j(&torque_n_m);
             let least = fold(f64::min).unwrap_or(f64::NAN);
             State {
                 weight: *weight,

@@ -3,7 +3,7 @@
 //! The crank's motion is prescribed, so that the torque is that of everything else plus that of the counterweight: with
 //! moment `M`, phase `tau`, pin angle `p` and sense of rotation `s`, `T = T_0 + s M cos(p + s tau)`. It is linear in `M cos
 //! tau` and `M sin tau`.
-use std::ops::RangeInclusive;
+use std::{f64::consts::TAU, ops::RangeInclusive};
 
 /// Moment and phase of a counterweight.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,6 +49,8 @@ pub(super) struct Revolution {
     rest_n_m: Vec<f64>,
     /// Torque of a moment of 1 N m at phase 0, and at 90 deg.
     per_moment: Vec<[f64; 2]>,
+    /// Angle of the pin that each sample stands for: half of those to its neighbours \[rad\].
+    spans_rad: Vec<f64>,
 }
 
 impl Revolution {
@@ -64,6 +66,12 @@ impl Revolution {
             .iter()
             .map(|angle| [sense * libm::cos(*angle), -libm::sin(*angle)])
             .collect();
+        let count = pin_rad.len();
+        let ahead = |k: usize| match k + 1 {
+            next if next < count => sense * (pin_rad[next] - pin_rad[k]),
+            _ => TAU - sense * (pin_rad[k] - pin_rad[0]),
+        };
+        let spans = (0..count).map(|k| 0.5 * (ahead(k) + ahead((k + count - 1) % count)));
         let [along, across] = components(present);
         let both = torque_n_m.iter().zip(&per_moment);
         Self {
@@ -72,7 +80,15 @@ impl Revolution {
                 .map(|(torque, [a, b])| torque - along * a - across * b)
                 .collect(),
             per_moment,
+            spans_rad: spans.collect(),
         }
+    }
+
+    /// Returns the work of a torque over the revolution \[J\], by the trapezoidal rule. The ledger of the simulation has the
+    /// same to 0.2 %, but scatters with the steps of the integration too much for a derivative.
+    pub(super) fn work_j(&self, torque_n_m: &[f64]) -> f64 {
+        let both = torque_n_m.iter().zip(&self.spans_rad);
+        both.map(|(torque, span)| torque * span).sum()
     }
 
     /// Returns the net torque with a counterweight [N m].
