@@ -4,7 +4,7 @@
 use crate::{
     calibration::{self, CalibrationRun},
     command_line::quote_path,
-    diagnosis::{DiagnosisRun, inputs},
+    diagnosis::{DiagnosisRun, inputs_at},
     folder::{GENES, RunFolder},
     hash::short_hash,
     manifest::{BALANCE, CALIBRATE, DIAGNOSE, LIFE, Manifest, RunIdentity, StartPoint},
@@ -12,7 +12,7 @@ use crate::{
     opened::Run,
 };
 use case::{Loaded, Overrides, load_with_notes};
-use discrepancy::{diagnose::Inputs, identify::Neighbours, thresholds::Thresholds};
+use discrepancy::{diagnose::Inputs, identify::Neighbours};
 use protocol::{
     case::{Case, EffectSetting},
     job::{Curves, Verdict},
@@ -140,7 +140,9 @@ impl AssessmentTarget {
             Ok(loaded) => (Some(loaded), Vec::new()),
             Err(error) => (None, vec![format!("there are no intervals: {error}")]),
         };
-        let found = calibration::recorded(finished(&run)?)?.result.calibrated;
+        let found = calibration::recorded(run.expect_parameters()?)?
+            .result
+            .calibrated;
         let best = found.best.genes.clone();
         let space = run.manifest.space(&run.case)?;
         let others = rivals(
@@ -172,7 +174,7 @@ impl AssessmentTarget {
 
     fn of_diagnosis(target: &Path) -> anyhow::Result<Self> {
         let run = DiagnosisRun::open(target)?;
-        let diagnosis = crate::diagnosis::recorded(finished(&run)?)?
+        let diagnosis = crate::diagnosis::recorded(run.expect_parameters()?)?
             .result
             .diagnosis;
         let mut loaded = run.loaded()?;
@@ -265,24 +267,8 @@ impl AssessmentTarget {
             return Ok(None);
         };
         let manifest = self.manifest(LifeSettings(self.machines.clone()))?;
-        let nothing = (Vec::new(), "");
-        let inputs = inputs(loaded, &manifest, &Thresholds::default(), nothing)?;
-        Ok(Some(Inputs {
-            start: Some(inputs.space.point(genes)),
-            ..inputs
-        }))
+        Ok(Some(inputs_at(loaded, &manifest, genes)?))
     }
-}
-
-/// Checks that a run has written the parameters that it found.
-fn finished<S: RunIdentity>(run: &Run<S>) -> Result<&Run<S>, Problem> {
-    if run.folder.file(GENES).exists() {
-        return Ok(run);
-    }
-    Err(Problem {
-        message: format!("{} is not finished", run.folder.path().display()),
-        remedy: format!("finish it first:\n  {}", run.resume_command()),
-    })
 }
 
 /// Returns a machine without each of the case's effects, then with all.

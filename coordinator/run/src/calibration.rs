@@ -1,10 +1,6 @@
 //! Work of a calibration, its result as the journal states it, and the data of its report.
-use crate::{diagnosis::inputs, opened::Run};
-use discrepancy::{
-    diagnose::Inputs,
-    identify::{LinearEstimate, UnknownEstimate},
-    thresholds::Thresholds,
-};
+use crate::{diagnosis::inputs_at, opened::Run};
+use discrepancy::identify::{LinearEstimate, UnknownEstimate};
 use journal::account::JobCost;
 use protocol::{
     case::Case,
@@ -64,27 +60,12 @@ pub async fn identifiability<E: Evaluator>(
     watch: &mut impl Watch<StageView>,
     stop: &mut Stop,
 ) -> anyhow::Result<Option<LinearEstimate>> {
-    let Some(inputs) = estimate_inputs(run, best)? else {
-        return Ok(None);
-    };
-    Ok(study::estimate_at_start_on(evaluator, &inputs, watch, stop).await?)
-}
-
-/// Returns the inputs of [`study::estimate_at_start_on`] at the best individual; `None` if the case has changed.
-///
-/// # Errors
-/// If the case has no space to search.
-pub fn estimate_inputs(run: &CalibrationRun, best: &[f64]) -> anyhow::Result<Option<Inputs>> {
     // the cycles of the records are in the case folder alone
     let Ok(loaded) = run.loaded() else {
         return Ok(None);
     };
-    let nothing = (Vec::new(), "");
-    let inputs = inputs(&loaded, &run.manifest, &Thresholds::default(), nothing)?;
-    Ok(Some(Inputs {
-        start: Some(inputs.space.point(best)),
-        ..inputs
-    }))
+    let inputs = inputs_at(&loaded, &run.manifest, best)?;
+    Ok(study::estimate_at_start_on(evaluator, &inputs, watch, stop).await?)
 }
 
 /// Returns the parameter sets compared in the result tables, recommended and optimised, with their names.

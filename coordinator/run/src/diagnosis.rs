@@ -186,6 +186,23 @@ pub(crate) fn inputs<S>(
     })
 }
 
+/// Builds the inputs of [`study::estimate_at_start_on`] at given values of the unknowns.
+///
+/// # Errors
+/// As [`inputs`].
+pub(crate) fn inputs_at<S>(
+    loaded: &Loaded,
+    manifest: &Manifest<S>,
+    genes: &[f64],
+) -> anyhow::Result<Inputs> {
+    let nothing = (Vec::new(), "");
+    let inputs = inputs(loaded, manifest, &Thresholds::default(), nothing)?;
+    Ok(Inputs {
+        start: Some(inputs.space.point(genes)),
+        ..inputs
+    })
+}
+
 /// Builds the data of a finished diagnosis's report; its sessions took `wall_s` seconds in total.
 ///
 /// # Errors

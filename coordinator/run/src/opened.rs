@@ -1,6 +1,6 @@
 //! Run with its folder, manifest and case: opening, resuming and comparing runs.
 use crate::{
-    folder::{CASE, MANIFEST, RunFolder},
+    folder::{CASE, GENES, MANIFEST, RunFolder},
     hash,
     manifest::{Manifest, RunIdentity},
 };
@@ -141,6 +141,20 @@ impl<S: RunIdentity> Run<S> {
     pub fn lost_journal(&self) -> bool {
         let computed = self.manifest.wall_s > 0.0 || self.folder.is_finished();
         self.folder.is_begun() && computed && !self.folder.has_journal()
+    }
+
+    /// Checks that the run has written the parameters that it found.
+    ///
+    /// # Errors
+    /// If it is not finished; the error gives the command that finishes it.
+    pub(crate) fn expect_parameters(&self) -> Result<&Self, Problem> {
+        if self.folder.file(GENES).exists() {
+            return Ok(self);
+        }
+        Err(Problem {
+            message: format!("{} is not finished", self.folder.path().display()),
+            remedy: format!("finish it first:\n  {}", self.resume_command()),
+        })
     }
 
     /// Returns the path of the run's journal.

@@ -252,12 +252,6 @@ fn finished(folder: &RunFolder) -> anyhow::Result<CalibrationRun> {
         .into());
     }
     let calibration = CalibrationRun::open(path)?;
-    if folder.file(GENES).exists() {
-        return Ok(calibration);
-    }
-    Err(Problem {
-        message: format!("{} is not finished", path.display()),
-        remedy: format!("finish it first:\n  {}", calibration.resume_command()),
-    }
-    .into())
+    calibration.expect_parameters()?;
+    Ok(calibration)
 }

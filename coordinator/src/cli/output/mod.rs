@@ -1,4 +1,5 @@
 //! Output of commands: terminal, progress display, errors, tables, files and JSON objects.
+pub(super) mod assessment;
 pub(super) mod calibration;
 pub(super) mod diagnosis;
 pub(super) mod files;

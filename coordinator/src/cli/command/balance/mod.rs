@@ -6,35 +6,28 @@ mod summary;
 mod torque;
 
 use crate::cli::{
-    argument::{
-        case::case_folder,
-        hours::Operation,
-        output::{Output, OutputChoice},
-        workers::WorkersChoice,
-    },
-    output::{problem::EXIT_CODES, progress::StageDisplay, terminal},
+    argument::{case::case_folder, hours::Operation, output::OutputChoice, workers::WorkersChoice},
+    output::{assessment::show, problem::EXIT_CODES, progress::StageDisplay},
 };
 use anyhow::Context as _;
 use clap::Args;
 use options::{BalanceOptions, BalancePlan};
-use output::resampled;
 use protocol::{
     case::Case,
     pumping_unit::{Machine, PumpingUnit, Simulation, TurnSense},
 };
-use report::{MachineAssessment, Topic, pumping_unit::crank_balance, text, write_report};
+use report::{MachineAssessment, Topic, pumping_unit::crank_balance};
 use run::{
     assessment::{
         AssessmentTarget, BalanceSettings, SimulatedMachine, SimulatedMachines, simulate_machines,
     },
-    folder::RESULT,
     message,
-    session::{Session, temporary::with_temporary_run},
+    session::{Session, temporary::compare_once},
 };
 use std::{f64::consts::TAU, path::PathBuf};
 use study::CompareRequest;
 use summary::{AssessedCrank, states};
-use support::Problem;
+use support::{Problem, interpolation::periodic};
 use torque::{Bounds, Counterweight, Revolution};
 
 /// Compare the crank's torque with the reducer's rating, and find the counterweight that lowers it.
@@ -125,32 +118,19 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         figures: crank_balance(&picture),
         notes,
     };
-    let folder = run.folder.path();
     let title = format!("Torque of the crank of {}", target.case.name);
-    let report = assessment.report(title, &folder.display().to_string());
-    for path in write_report(folder, &report)?.iter().take(1) {
-        message::print(&format!("open {}", path.display()));
-    }
-    report::folder::write(
-        folder,
-        "torque.csv",
-        &output::csv(&plan, (present, &optimum))?,
-    )?;
-    run.folder.write_assessment(&assessment)?;
-    let wall_s = session.wall_s(&run);
-    let object = output::object(
-        (&target.case, &unit.machine),
-        &plan,
-        (&assessed, &optimum),
-        wall_s,
-    );
-    run.folder.write_json(RESULT, &object)?;
-    // the tables have them
-    if arguments.output.output == Output::Json {
-        message::print_notes(&assessment.notes);
-    }
-    let tables = || text(&report, terminal::style());
-    terminal::print(arguments.output.output, tables, &object)
+    show(
+        &run,
+        (title, &assessment),
+        ("torque.csv", &output::csv(&plan, (present, &optimum))?),
+        &output::object(
+            (&target.case, &unit.machine),
+            &plan,
+            (&assessed, &optimum),
+            session.wall_s(&run),
+        ),
+        arguments.output.output,
+    )
 }
 
 /// Returns the angle of the crank pin at each sample of a simulation \[rad\], from its recorded motion: where the motor slips
@@ -172,10 +152,11 @@ fn pin_rad(machine: &Machine, simulation: &Simulation) -> Vec<f64> {
     let ahead: Vec<f64> = ahead.collect();
     let at = simulation.motion.iter().map(|own| own.turn_deg);
     let at: Vec<f64> = at.collect();
-    let at_samples = resampled((&at, &ahead), &simulation.turn_deg);
-    let both = simulation.turn_deg.iter().zip(at_samples);
-    both.map(|(turn, ahead)| ahead + sense(machine) * turn.to_radians())
-        .collect()
+    let angle = |turn: &f64| {
+        let ahead = periodic(&at, &ahead, *turn, 360.0).unwrap_or(f64::NAN);
+        ahead + sense(machine) * turn.to_radians()
+    };
+    simulation.turn_deg.iter().map(angle).collect()
 }
 
 /// Returns 1 for a crank that turns counter-clockwise, -1 for one that turns clockwise.
@@ -302,9 +283,7 @@ fn simulate_with(
         columns: Vec::new(),
     };
     let wanted: Vec<CompareRequest> = plan.operations.iter().map(request).collect();
-    let groups = with_temporary_run(&case, "balance", workers.max(1), async |dispatch, stop| {
-        study::compare(dispatch, &case, &wanted, stop).await
-    })?;
+    let groups = compare_once("balance", &case, &wanted, workers.max(1))?;
     let each = run::assessment::curves(&case, &groups, 0)?;
     Ok(each.iter().map(Simulation::of).collect::<Result<_, _>>()?)
 }

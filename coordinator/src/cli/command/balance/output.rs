@@ -15,6 +15,7 @@ use report::{
 };
 use serde_json::{Value, json};
 use std::f64::consts::TAU;
+use support::interpolation::periodic;
 
 /// Factor from newton metres, watts and newtons to the units of the tables.
 const KILO: f64 = 1e-3;
@@ -116,7 +117,7 @@ pub(super) fn notes(
         let Some(measured) = measured(case, operation.condition) else {
             continue;
         };
-        if correlation(&resampled(measured, &state.turn_deg), &state.torque_n_m) < OPPOSITE {
+        if correlation_at(measured, (&state.turn_deg, &state.torque_n_m)) < OPPOSITE {
             notes.push(format!(
                 "the measured torque of {} has the opposite sign of the simulated one: the record counts a torque as \
                  negative that drives the machine; correct its column",
@@ -135,20 +136,11 @@ fn measured(case: &Case, condition: usize) -> Option<(&[f64], &[f64])> {
     Some((&channel.abscissa.points, &record.mean))
 }
 
-/// Returns the values of a periodic curve at other crank angles.
-pub(super) fn resampled((at, values): (&[f64], &[f64]), turn_deg: &[f64]) -> Vec<f64> {
-    let value = |turn: &f64| {
-        let next = at.partition_point(|own| own <= turn);
-        let (before, after) = ((next + at.len() - 1) % at.len(), next % at.len());
-        let gap = (at[after] - at[before]).rem_euclid(360.0);
-        let share = if gap > 0.0 {
-            (turn - at[before]).rem_euclid(360.0) / gap
-        } else {
-            0.0
-        };
-        values[before] + share * (values[after] - values[before])
-    };
-    turn_deg.iter().map(value).collect()
+/// Returns the correlation of a measured with a simulated curve over the crank angles of the latter.
+fn correlation_at(measured: (&[f64], &[f64]), (turn_deg, simulated): (&[f64], &[f64])) -> f64 {
+    let value = |turn: &f64| periodic(measured.0, measured.1, *turn, 360.0).unwrap_or(f64::NAN);
+    let measured: Vec<f64> = turn_deg.iter().map(value).collect();
+    correlation(&measured, simulated)
 }
 
 fn correlation(a: &[f64], b: &[f64]) -> f64 {
@@ -603,12 +595,13 @@ mod tests {
         let (turn, record) = (at(0.5, 0.0, 720), at(3.0, 1.5, 120));
         let measured = curve(&record);
         let simulated = curve(&turn);
-        let same = resampled((&record, &measured), &turn);
-        let apart = same.iter().zip(&simulated).map(|(a, b)| (a - b).abs());
+        let same = turn
+            .iter()
+            .map(|turn| periodic(&record, &measured, *turn, 360.0).unwrap());
+        let apart = same.zip(&simulated).map(|(a, b)| (a - b).abs());
         assert!(apart.fold(0.0, f64::max) < 10.0);
-        assert!(correlation(&same, &simulated) > 0.999);
+        assert!(correlation_at((&record, &measured), (&turn, &simulated)) > 0.999);
         let opposite: Vec<f64> = measured.iter().map(|x| -x).collect();
-        let opposite = resampled((&record, &opposite), &turn);
-        assert!(correlation(&opposite, &simulated) < OPPOSITE);
+        assert!(correlation_at((&record, &opposite), (&turn, &simulated)) < OPPOSITE);
     }
 }

@@ -6,12 +6,8 @@ mod place;
 mod spots;
 
 use crate::cli::{
-    argument::{
-        case::case_folder,
-        output::{Output, OutputChoice},
-        workers::WorkersChoice,
-    },
-    output::{problem::EXIT_CODES, progress::StageDisplay, terminal},
+    argument::{case::case_folder, output::OutputChoice, workers::WorkersChoice},
+    output::{assessment::show, problem::EXIT_CODES, progress::StageDisplay},
 };
 use body::Body;
 use case::pumping_unit::{HeadSource, load_meshed_head};
@@ -25,13 +21,11 @@ use protocol::{
 use report::{
     MachineAssessment, Topic,
     pumping_unit::{HeadLifePicture, head_life},
-    text, write_report,
 };
 use run::{
     assessment::{
         AssessmentTarget, LifeSettings, SimulatedMachine, SimulatedMachines, simulate_machines,
     },
-    folder::RESULT,
     message,
     session::Session,
 };
@@ -133,22 +127,14 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         },
         notes,
     };
-    let folder = run.folder.path();
     let title = format!("Life of the back head of {}", target.case.name);
-    let report = assessment.report(title, &folder.display().to_string());
-    for path in write_report(folder, &report)?.iter().take(1) {
-        message::print(&format!("open {}", path.display()));
-    }
-    report::folder::write(folder, "life.csv", &output::csv(&assessed)?)?;
-    run.folder.write_assessment(&assessment)?;
-    let object = output::object(&target.case, &plan, &assessed, session.wall_s(&run));
-    run.folder.write_json(RESULT, &object)?;
-    // the tables have them
-    if arguments.output.output == Output::Json {
-        message::print_notes(&assessment.notes);
-    }
-    let tables = || text(&report, terminal::style());
-    terminal::print(arguments.output.output, tables, &object)
+    show(
+        &run,
+        (title, &assessment),
+        ("life.csv", &output::csv(&assessed)?),
+        &output::object(&target.case, &plan, &assessed, session.wall_s(&run)),
+        arguments.output.output,
+    )
 }
 
 /// Assesses all machines; the last of those that are compared with its spread.
