@@ -2,6 +2,7 @@
 //! lowers it.
 mod options;
 mod output;
+mod picture;
 mod summary;
 mod torque;
 
@@ -106,7 +107,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         &optimum,
     );
     notes.extend(simulated.notes);
-    let picture = output::picture(
+    let picture = picture::picture(
         (&target.case, &unit.machine),
         (&plan, &revolutions),
         (present, &optimum),
