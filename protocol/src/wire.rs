@@ -13,7 +13,7 @@ use serde::{Serialize, de::DeserializeOwned};
 
 /// Version of the frame and of everything in it; both peers must have the same. A test compares the layout of
 /// every message with a stored copy: a change of layout requires a higher number.
-pub const VERSION: u8 = 18;
+pub const VERSION: u8 = 19;
 /// Largest length of a frame's body (bytes): a long simulation with its snapshots fits.
 pub const BODY_LIMIT: usize = 16 << 20;
 /// Allowance for the data added to an outcome at each hop: slot to worker, worker to coordinator, coordinator

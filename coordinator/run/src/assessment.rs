@@ -11,8 +11,10 @@ use crate::{
     name::RunName,
     opened::Run,
 };
-use case::{Loaded, Overrides, load_with_notes};
-use discrepancy::{diagnose::Inputs, identify::Neighbours};
+use case::{DiagnoseEntry, Loaded, Overrides, load_with_notes};
+use discrepancy::{
+    diagnose::Estimate, estimate::neighbourhood::Neighbourhood, thresholds::NOISE_RATIO_LIMIT,
+};
 use protocol::{
     case::{Case, EffectSetting},
     job::{Curves, Verdict},
@@ -61,6 +63,16 @@ impl RunIdentity for BalanceSettings {
     }
 }
 
+/// Source of the individuals about the assessed machine.
+enum Uncertainty {
+    /// None: nothing was fitted, or the case has changed since the run.
+    Unknown,
+    /// An estimate from the records of the case, at parameters that were fitted to them.
+    Estimate(Box<Loaded>, Vec<f64>),
+    /// The fit of a diagnosis, with the ratio of what it leaves to the noise.
+    Fitted(Option<Neighbourhood>, f64),
+}
+
 /// Case, calibration or diagnosis that is assessed.
 pub struct AssessmentTarget {
     /// Folder of the case.
@@ -70,9 +82,7 @@ pub struct AssessmentTarget {
     machines: Machines,
     /// Run that is assessed; `None` for a case.
     pub run: Option<PathBuf>,
-    /// Case with its records, and parameters at which the unknowns are estimated; `None` where there are none, or where
-    /// the case has changed since the run.
-    estimate: Option<(Loaded, Vec<f64>)>,
+    uncertainty: Uncertainty,
     measured: Option<PathBuf>,
     /// Notes on the case and its records.
     pub notes: Vec<String>,
@@ -129,7 +139,11 @@ impl AssessmentTarget {
             run: None,
             notes: loaded.notes.iter().map(ToString::to_string).collect(),
             synthetic: loaded.synthetic,
-            estimate: start.is_some().then_some((loaded, values)),
+            uncertainty: if start.is_some() {
+                Uncertainty::Estimate(Box::new(loaded), values)
+            } else {
+                Uncertainty::Unknown
+            },
             measured: None,
         })
     }
@@ -162,7 +176,9 @@ impl AssessmentTarget {
                     .map(|own| own.end.genes.clone())
                     .collect(),
             },
-            estimate: loaded.map(|loaded| (loaded, best)),
+            uncertainty: loaded.map_or(Uncertainty::Unknown, |loaded| {
+                Uncertainty::Estimate(Box::new(loaded), best)
+            }),
             run: Some(target.to_owned()),
             folder: run.manifest.case_folder.clone(),
             measured: run.manifest.replaced_records().map(ToOwned::to_owned),
@@ -177,32 +193,58 @@ impl AssessmentTarget {
         let diagnosis = crate::diagnosis::recorded(run.expect_parameters()?)?
             .result
             .diagnosis;
-        let mut loaded = run.loaded()?;
-        let of_case: Vec<String> = loaded.effects.iter().map(|own| own.id.clone()).collect();
-        let start = StartPoint::read(&run.folder.file(GENES), &mut loaded)?;
+        let before_found = run.case.clone();
+        let mut loaded = Loaded {
+            case: run.case,
+            notes: Vec::new(),
+            cycles: Vec::new(),
+            synthetic: run.manifest.synthetic,
+            effects: run.manifest.effects.clone(),
+            diagnose: DiagnoseEntry::default(),
+        };
         // notes on the gene file tell what the diagnosis found
-        let notes = run.manifest.notes.clone();
-        let effects = loaded.effects.iter().map(|own| own.id.clone());
-        let found: Vec<String> = effects.filter(|id| !of_case.contains(id)).collect();
-        let plain = |name: &str, genes: Vec<f64>| without(&found, name, genes);
-        let mut compared = vec![plain("recommended", loaded.case.start())];
-        let before = diagnosis.before.as_ref().filter(|_| !found.is_empty());
-        compared.extend(before.map(|before| {
+        let start = StartPoint::read(&run.folder.file(GENES), &mut loaded)?;
+        let case = loaded.case;
+        let added = diagnosis.after.iter().flat_map(|fit| &fit.added);
+        let added: Vec<&Estimate> = added
+            .filter_map(|id| diagnosis.effects.iter().find(|own| own.id == *id))
+            .collect();
+        let plain = |name: &str, genes: &[f64]| {
+            added
+                .iter()
+                .fold(NamedIndividual::new(name, genes.to_vec()), |own, found| {
+                    without(own, found, &before_found)
+                })
+        };
+        let mut compared = vec![plain("recommended", &case.start())];
+        let before = diagnosis.before.as_ref().filter(|_| !added.is_empty());
+        let with_found = |own: &[f64]| {
             let mut genes = start.genes.clone();
-            genes[..before.genes.len()].copy_from_slice(&before.genes);
-            plain("recalibrated", genes)
+            genes[..own.len()].copy_from_slice(own);
+            genes
+        };
+        compared.extend(before.map(|before| plain("recalibrated", &with_found(&before.genes))));
+        let switched = added.iter().filter(|found| !found.unknowns.is_empty());
+        compared.extend(switched.map(|found| {
+            let name = format!("diagnosed without {}", found.id);
+            without(
+                NamedIndividual::new(name, start.genes.clone()),
+                found,
+                &before_found,
+            )
         }));
-        compared.extend(with_and_without(&loaded.case, "diagnosed", &start.genes));
-        let case = loaded.case.clone();
-        // what was found in the record is no knowledge beside it
-        for unknown in &mut loaded.case.unknowns {
-            let of_found = unknown
-                .of_effect()
-                .is_some_and(|(id, _)| found.iter().any(|own| own == id));
-            if of_found {
-                unknown.prior = None;
+        compared.extend(with_and_without(&case, "diagnosed", &start.genes));
+        // individuals of the fit state what was added as effects; genes of the case have it as unknowns
+        let neighbourhood = diagnosis.neighbourhood.map(|mut own| {
+            for individual in &mut own.individuals {
+                individual.genes = with_found(&individual.genes);
             }
-        }
+            own
+        });
+        let fit = diagnosis.after.as_ref();
+        let ratio = fit.map_or(f64::NAN, |fit| {
+            (fit.chi_squared / fit.entries as f64).sqrt()
+        });
         Ok(Self {
             folder: run.manifest.case_folder.clone(),
             case,
@@ -212,9 +254,9 @@ impl AssessmentTarget {
                 others: Vec::new(),
             },
             run: Some(target.to_owned()),
-            estimate: Some((loaded, start.genes)),
+            uncertainty: Uncertainty::Fitted(neighbourhood, ratio),
             measured: run.manifest.replaced_records().map(ToOwned::to_owned),
-            notes,
+            notes: run.manifest.notes.clone(),
             synthetic: run.manifest.synthetic,
         })
     }
@@ -261,33 +303,66 @@ impl AssessmentTarget {
         })
     }
 
-    /// Returns the inputs of the estimate of the unknowns at the assessed parameters; `None` where there are none.
-    fn estimate_inputs(&self) -> anyhow::Result<Option<Inputs>> {
-        let Some((loaded, genes)) = &self.estimate else {
-            return Ok(None);
+    /// Returns the individuals about the assessed machine, or the reason why there are none, if one is known.
+    async fn neighbourhood<E: Evaluator>(
+        &self,
+        evaluator: &mut E,
+        watch: &mut dyn Watch<StageView>,
+        stop: &mut Stop,
+    ) -> anyhow::Result<Result<Neighbourhood, Option<String>>> {
+        let (found, ratio) = match &self.uncertainty {
+            Uncertainty::Unknown => return Ok(Err(None)),
+            Uncertainty::Estimate(loaded, genes) => {
+                let manifest = self.manifest(LifeSettings(self.machines.clone()))?;
+                let inputs = inputs_at(loaded, &manifest, genes)?;
+                let found =
+                    study::neighbourhood_at_start_on(evaluator, &inputs, watch, stop).await?;
+                let Some(found) = found else {
+                    return Ok(Err(None));
+                };
+                found
+            }
+            Uncertainty::Fitted(found, ratio) => (found.clone(), *ratio),
         };
-        let manifest = self.manifest(LifeSettings(self.machines.clone()))?;
-        Ok(Some(inputs_at(loaded, &manifest, genes)?))
+        Ok(found.ok_or_else(|| {
+            Some(if ratio < NOISE_RATIO_LIMIT {
+                "the record does not determine all unknowns".to_owned()
+            } else {
+                format!(
+                    "the fit leaves {ratio:.1} times the noise, so that its numbers are not those of the machine; \
+                     `horsehead diagnose` finds what the model lacks"
+                )
+            })
+        }))
     }
 }
 
 /// Returns a machine without each of the case's effects, then with all.
 fn with_and_without(case: &Case, name: &str, genes: &[f64]) -> Vec<NamedIndividual> {
-    let each = case.effects.iter().map(|own| {
-        let name = format!("{name} without {}", own.id);
-        without(std::slice::from_ref(&own.id), &name, genes.to_vec())
+    let each = case.effects.iter().map(|own| NamedIndividual {
+        effects: vec![absent(&own.id)],
+        ..NamedIndividual::new(format!("{name} without {}", own.id), genes.to_vec())
     });
     each.chain([NamedIndividual::new(name, genes.to_vec())])
         .collect()
 }
 
-/// Returns a machine without some of the case's effects: an effect of which no parameter is stated is absent.
-fn without(effects: &[String], name: &str, genes: Vec<f64>) -> NamedIndividual {
-    let absent = effects.iter().map(|id| EffectSetting::new(id, &[]));
-    NamedIndividual {
-        effects: absent.collect(),
-        ..NamedIndividual::new(name, genes)
+/// Returns a machine without an effect that a diagnosis added: without that of the library, or with the unknowns that it
+/// switched on at their values in the case as it was before.
+fn without(mut machine: NamedIndividual, found: &Estimate, before: &Case) -> NamedIndividual {
+    if found.unknowns.is_empty() {
+        machine.effects.push(absent(&found.id));
     }
+    let off = before.start();
+    for &position in &found.unknowns {
+        machine.genes[position] = off[position];
+    }
+    machine
+}
+
+/// Returns the setting of an effect that is absent: no parameter is stated.
+fn absent(id: &str) -> EffectSetting {
+    EffectSetting::new(id, &[])
 }
 
 /// Machine with its simulated curves.
@@ -306,8 +381,9 @@ pub struct SimulatedMachines {
     pub compared: Vec<SimulatedMachine>,
     /// Fits of other families.
     pub others: Vec<SimulatedMachine>,
-    /// Machines beside the last one, by which a quantity has an interval; `None` where it has none.
-    pub beside: Option<(Neighbours, Vec<SimulatedMachine>)>,
+    /// Machines about the last one, by which a quantity has an interval, in the order of the individuals, without drawn
+    /// ones that did not complete; `None` where a quantity has no interval.
+    pub about: Option<(Neighbourhood, Vec<SimulatedMachine>)>,
     /// Reasons why machines were left out, or why quantities have no interval.
     pub notes: Vec<String>,
 }
@@ -338,7 +414,7 @@ pub async fn simulate_machines<E: Evaluator>(
     let mut simulated = SimulatedMachines {
         compared: Vec::new(),
         others: Vec::new(),
-        beside: None,
+        about: None,
         notes: Vec::new(),
     };
     for (k, machine) in all.into_iter().enumerate() {
@@ -351,35 +427,29 @@ pub async fn simulate_machines<E: Evaluator>(
                 .push(format!("left out: {}", problem.message)),
         }
     }
-    let Some(inputs) = target.estimate_inputs()? else {
-        return Ok(simulated);
+    let found = target.neighbourhood(evaluator, watch, stop).await?;
+    let neighbourhood = match found {
+        Ok(neighbourhood) => neighbourhood,
+        Err(reason) => {
+            let note = reason.map(|own| format!("there are no intervals: {own}"));
+            simulated.notes.extend(note);
+            return Ok(simulated);
+        }
     };
-    let estimate = study::estimate_at_start_on(evaluator, &inputs, watch, stop).await?;
-    let Some(estimate) = estimate else {
-        return Ok(simulated);
-    };
-    let Some(neighbours) = estimate.neighbours else {
-        simulated.notes.push(format!(
-            "there are no intervals: the fit leaves {:.1} times the noise, so that its numbers are not those of the \
-             machine; `horsehead diagnose` finds what the model lacks",
-            estimate.noise_ratio
-        ));
-        return Ok(simulated);
-    };
-    let individuals = (1..).zip(&neighbours.individuals);
-    let individuals: Vec<NamedIndividual> = individuals
-        .map(|(number, genes)| NamedIndividual::new(format!("neighbour {number}"), genes.clone()))
-        .collect();
-    let beside = simulate(
-        evaluator,
-        &target.case,
-        wanted,
-        (position, individuals),
-        stop,
-    )
-    .await?;
-    match beside.into_iter().collect::<Result<Vec<_>, Problem>>() {
-        Ok(beside) => simulated.beside = Some((neighbours, beside)),
+    let individuals = (1..).zip(&neighbourhood.individuals);
+    let individuals = individuals.map(|(number, own)| NamedIndividual {
+        name: format!("neighbour {number}"),
+        genes: own.genes.clone(),
+        effects: own.effects.clone(),
+    });
+    let individuals = (position, individuals.collect());
+    let mut about = simulate(evaluator, &target.case, wanted, individuals, stop).await?;
+    let drawn = about.split_off(neighbourhood.along_parameters());
+    match about.into_iter().collect::<Result<Vec<_>, Problem>>() {
+        Ok(mut about) => {
+            about.extend(drawn.into_iter().flatten());
+            simulated.about = Some((neighbourhood, about));
+        }
         Err(problem) => {
             let note = format!("there are no intervals: {}", problem.message);
             simulated.notes.push(note);

@@ -186,7 +186,7 @@ pub(crate) fn inputs<S>(
     })
 }
 
-/// Builds the inputs of [`study::estimate_at_start_on`] at given values of the unknowns.
+/// Builds the inputs of an estimate at given values of the unknowns, such as [`study::estimate_at_start_on`].
 ///
 /// # Errors
 /// As [`inputs`].

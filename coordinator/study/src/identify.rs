@@ -9,7 +9,8 @@ use super::{
     watch::Watch,
 };
 use discrepancy::diagnose::Inputs;
-use discrepancy::identify::{LinearEstimate, identify, linear_estimate};
+use discrepancy::estimate::neighbourhood::Neighbourhood;
+use discrepancy::identify::{LinearEstimate, identify, linear_estimate, neighbourhood_at_start};
 use discrepancy::laboratory::Stage;
 use journal::job_range::{EXPERIMENTS, IDENTIFIABILITY};
 use protocol::case::{Case, Channel};
@@ -71,4 +72,25 @@ pub async fn estimate_at_start_on<E: Evaluator>(
         stop,
     );
     linear_estimate(&mut jobs, inputs).await
+}
+
+/// Collects individuals about the start values, by which any quantity of the machine has an interval, as
+/// [`neighbourhood_at_start`].
+///
+/// # Errors
+/// If no evaluator is left, or the user stops.
+pub async fn neighbourhood_at_start_on<E: Evaluator>(
+    evaluator: &mut E,
+    inputs: &Inputs,
+    watch: &mut dyn Watch<StageView>,
+    stop: &mut Stop,
+) -> Result<Option<(Option<Neighbourhood>, f64)>, StudyError> {
+    let mut jobs = Jobs::new(
+        (evaluator, IDENTIFIABILITY),
+        inputs,
+        &[Stage::Show],
+        watch,
+        stop,
+    );
+    neighbourhood_at_start(&mut jobs, inputs).await
 }

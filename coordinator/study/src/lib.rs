@@ -48,7 +48,7 @@ pub use evaluate::{EvaluationRequest, Scored, evaluate};
 pub use evaluator::Evaluator;
 pub use evaluator::answer;
 pub use experiments::{StageView, library};
-pub use identify::{estimate_at_start_on, identify_on};
+pub use identify::{estimate_at_start_on, identify_on, neighbourhood_at_start_on};
 pub use job_number::JobNumbers;
 pub use log::{EvaluationLog, EvaluationOutcome, LogEntry};
 pub use mismatch::{check_records, mismatches, recommended};

@@ -36,7 +36,7 @@ pub struct HeadSurface {
     pub held: Vec<bool>,
     /// Faces: indices of the points at their corners; a triangle repeats its last one.
     pub faces: Vec<[u32; 4]>,
-    /// Stress at each point under each unit load: xx, yy, zz, xy, yz, zx. Loads: 1 N in all, inwards and uniform over
+    /// Stress at each point under each requested unit load: xx, yy, zz, xy, yz, zx. Loads: 1 N in all, inwards and uniform over
     /// each interval of [`super::Machine::load_breaks_deg`], and 1 N at the rope's fixed end, inwards and towards increasing psi
     /// [MPa/N]; unit accelerations of the beam along x and y [MPa per m/s2] and about the pivot [MPa per rad/s2]; unit
     /// coordinates of the modes [MPa per kg^1/2 m].

@@ -32,7 +32,7 @@ pub use parts::{
 };
 pub use reduce_head::{
     ElementKind, HeadFields, HeadGauge, HeadMesh, HeadMode, ModeFamily, OmittedMode, REDUCE_HEAD,
-    ReduceHeadSpec, ReducedHead, RopePair, RopeWrap,
+    ReduceHeadSpec, ReducedHead, RopePair, RopeWrap, SurfaceRequest,
 };
 pub use run::{Integrator, RunSettings};
 pub use sensor::Sensor;

@@ -42,9 +42,8 @@ pub struct ReduceHeadSpec {
     pub pair: Option<RopePair>,
     /// Static load under which the stress of the gauges and its gradient are returned.
     pub wrap: RopeWrap,
-    /// Ends of the intervals of the rope's arc, ascending from its fixed end \[deg\], if the stress on the surface under
-    /// unit loads is to be returned.
-    pub surface_deg: Option<Vec<f64>>,
+    /// Unit loads under which the stress on the surface is returned; `None` for no surface.
+    pub surface: Option<SurfaceRequest>,
     /// Whether the displacement fields of all modes are returned, and displacement and stress under the
     /// static load.
     pub fields: bool,
@@ -65,6 +64,25 @@ pub struct HeadMesh {
     pub rope_surface: Vec<u32>,
     /// Whether the mesh is only the half z >= 0 of the head.
     pub half: bool,
+}
+
+/// Unit loads under which the stress on the surface of a head is requested: all of them may be more than one message
+/// holds.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SurfaceRequest {
+    /// Ends of the intervals of the rope's arc, ascending from its fixed end \[deg\].
+    pub breaks_deg: Vec<f64>,
+    /// Indices of the loads whose stress is returned, in this order, among those of
+    /// [`HeadSurface::stress_mpa`](super::HeadSurface::stress_mpa).
+    pub returned: Vec<u32>,
+}
+
+impl SurfaceRequest {
+    /// Returns the number of the loads that are not modes, which come first.
+    pub const fn statics(&self) -> usize {
+        // one fewer intervals than ends, two forces, three accelerations
+        self.breaks_deg.len() + 4
+    }
 }
 
 /// Type of the elements of a mesh, the same for all.

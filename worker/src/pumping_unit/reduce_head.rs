@@ -8,7 +8,8 @@ use protocol::{
     },
 };
 use simulation::flexible::{
-    self, Family, Gauge, Mesh, Pair, Reduction, ReductionRequest, Steel, SwayTables, Wrap, reduce,
+    self, Family, Gauge, Mesh, Pair, Reduction, ReductionRequest, Steel, SurfaceLoads, SwayTables,
+    Wrap, reduce,
 };
 use std::time::Instant;
 
@@ -33,7 +34,10 @@ pub(super) fn run(spec: &ReduceHeadSpec) -> Result<ReducedHead, Failure> {
         anchor: wrap.anchor_deg.to_radians(),
         leaves: wrap.leaves_deg.to_radians(),
     };
-    let breaks = spec.surface_deg.as_deref().map(radians);
+    let asked = spec.surface.as_ref().map(|own| {
+        let returned: Vec<usize> = own.returned.iter().map(|&load| load as usize).collect();
+        (radians(&own.breaks_deg), returned)
+    });
     let started = Instant::now();
     let reduction = reduce(&ReductionRequest {
         mesh: &mesh,
@@ -54,7 +58,9 @@ pub(super) fn run(spec: &ReduceHeadSpec) -> Result<ReducedHead, Failure> {
         }),
         modes: spec.modes,
         families: &families,
-        surface: breaks.as_deref(),
+        surface: asked
+            .as_ref()
+            .map(|(breaks, returned)| SurfaceLoads { breaks, returned }),
         fields: spec.fields,
     })
     .map_err(|error| Failure::misconfigured("flexible_head", error.to_string()))?;

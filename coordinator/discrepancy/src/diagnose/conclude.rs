@@ -16,6 +16,7 @@ use crate::diagnose::validate::{
     doubt_of_force, drop_implausible, prove, replace_by_force, validate,
 };
 use crate::estimate::effect_size::{Estimate, refitted};
+use crate::estimate::neighbourhood::Neighbourhood;
 use crate::estimate::nuisances::nuisance_estimates;
 use crate::estimate::spread::{Spread, coloured};
 use crate::hypothesis::round::WorkingRound;
@@ -102,6 +103,8 @@ pub(crate) async fn conclude<L: Laboratory>(
         diagnosis.notes.push(coloured(growth));
     }
     diagnosis.nuisances = nuisance_estimates(&after, &spread);
+    let mut experiments = session.experiments(Stage::Show);
+    diagnosis.neighbourhood = Neighbourhood::around(&mut experiments, &after, &spread).await?;
     // what a missing effect leaves is no noise: limits are those beside the answer
     let ratio = (after.misfit() / base.fit.misfit()).sqrt();
     for limit in &mut diagnosis.limits {

@@ -6,6 +6,7 @@ use crate::estimate::effect_size::Estimate;
 use crate::estimate::experiment_design::IndistinguishablePair;
 use crate::estimate::force::ForceEstimate;
 use crate::estimate::limit::Limit;
+use crate::estimate::neighbourhood::Neighbourhood;
 use crate::estimate::nuisances::NuisanceEstimate;
 use crate::hypothesis::refit::Refitted;
 use crate::hypothesis::round::{Round, WorkingRound};
@@ -59,6 +60,8 @@ pub struct Diagnosis<F = FitSummary, S = f64> {
     pub before: Option<F>,
     /// Fit of the model with the effects of the answer.
     pub after: Option<F>,
+    /// Individuals about the answer, by which any quantity of the machine has an interval; `None` where it has none.
+    pub neighbourhood: Option<Neighbourhood>,
     /// p-value of the whiteness test of the residual: of the recalibrated model, and of the answer.
     pub whiteness: Option<[f64; 2]>,
     /// Shifts of single parameters when the recalibrated model is refitted on parts of the abscissa and under
@@ -182,6 +185,7 @@ impl<F, S> Diagnosis<F, S> {
             look_alikes: Vec::new(),
             before: None,
             after: None,
+            neighbourhood: None,
             whiteness: None,
             drifts: Vec::new(),
             drifts_after: Vec::new(),
@@ -226,6 +230,7 @@ impl WorkingDiagnosis {
             nuisances: self.nuisances,
             absorbed: self.absorbed,
             look_alikes: self.look_alikes,
+            neighbourhood: self.neighbourhood,
             whiteness: self.whiteness,
             drifts: self.drifts,
             drifts_after: self.drifts_after,

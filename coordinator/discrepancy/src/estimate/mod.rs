@@ -6,5 +6,6 @@ pub mod effect_size;
 pub mod experiment_design;
 pub mod force;
 pub mod limit;
+pub mod neighbourhood;
 pub mod nuisances;
 pub mod spread;

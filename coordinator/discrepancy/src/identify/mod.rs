@@ -20,7 +20,7 @@ pub use answer::{
     FurtherMeasurement, IdentificationResult, IntervalEnd, UnknownEstimate,
 };
 
-pub use linear_estimate::{LinearEstimate, Neighbours, linear_estimate};
+pub use linear_estimate::{LinearEstimate, linear_estimate, neighbourhood_at_start};
 
 use crate::baseline::establish::establish;
 use crate::estimate::nuisances::nuisance_estimates;

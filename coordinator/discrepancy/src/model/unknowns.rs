@@ -263,16 +263,23 @@ impl Point {
         apply_gains(self.model.nuisance_values(&self.x), record, curves);
     }
 
+    /// Returns the machine at the point under a condition: without the errors of its instruments.
+    pub(crate) fn machine(&self, condition: usize) -> Individual {
+        let Self { model, x } = self;
+        let added = model.settings(x).filter(|(off, _)| off.is_none());
+        Individual {
+            effects: added.map(|(_, setting)| setting).collect(),
+            ..Individual::new(condition, model.genes(x))
+        }
+    }
+
     /// Creates the job that simulates the point under a condition.
     pub fn experiment(&self, condition: usize, numerics: &Numerics) -> SimulateSpec {
         let Self { model, x } = self;
-        let added = model.settings(x).filter(|(off, _)| off.is_none());
         let never_exact = effects(model.nuisance_values(x)).into_iter();
         let never_exact = never_exact.map(|(effect, own)| setting(effect, &own));
-        let mut individual = Individual::new(condition, model.genes(x));
-        individual.effects = never_exact
-            .chain(added.map(|(_, setting)| setting))
-            .collect();
+        let mut individual = self.machine(condition);
+        individual.effects.splice(..0, never_exact);
         SimulateSpec {
             individual,
             numerics: numerics.clone(),

@@ -77,6 +77,14 @@ pub enum ReductionError {
         /// Distance of the rope from the plane z = 0 \[m\].
         offset: f64,
     },
+    /// A unit load is requested that the surface does not have.
+    #[error("unit load {index} of the surface does not exist: there are {count}")]
+    UnitLoad {
+        /// Index of the requested load.
+        index: usize,
+        /// Number of loads.
+        count: usize,
+    },
     /// An end of a gauge lies in no element.
     #[error(
         "an end of gauge {gauge} lies more than 1 mm outside the mesh: check the gauge's position, direction and length"

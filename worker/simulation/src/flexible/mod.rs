@@ -28,5 +28,5 @@ pub use error::ReductionError;
 pub use gauge::Gauge;
 pub use mesh::Mesh;
 pub use reduction::reduce;
-pub use request::{Family, Pair, ReductionRequest, Wrap};
+pub use request::{Family, Pair, ReductionRequest, SurfaceLoads, Wrap};
 pub use result::{LeftOut, Mode, Reduction, SurfacePoint, SurfaceStress, SwayTables};

@@ -62,8 +62,8 @@ pub fn reduce(request: &ReductionRequest<'_>) -> Result<Reduction, ReductionErro
         (modes, Vec::new())
     };
     let mut reduction = statics.statics(request, &rim, &stations, &rows)?;
-    if let Some(breaks) = request.surface {
-        let surface = surface(&statics, request, &rim, (breaks, &modes))?;
+    if let Some(loads) = &request.surface {
+        let surface = surface(&statics, request, &rim, (loads, &modes))?;
         reduction.surface = Some(surface);
     }
     if !request.fields {

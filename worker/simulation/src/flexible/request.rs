@@ -50,11 +50,22 @@ pub struct ReductionRequest<'a> {
     /// Wrapped ropes, as they occur over a revolution, used as load patterns: the modes that couple most to
     /// them and to the beam's motion are kept. If empty, the lowest modes are kept.
     pub patterns: &'a [Wrap],
-    /// Angles between which a uniform line load of the rope is a load of its own, ascending from the rope's fixed end
-    /// \[rad\], if the stress on the surface is to be returned.
-    pub surface: Option<&'a [f64]>,
+    /// Loads under which the stress on the surface is computed; `None` if it is not requested.
+    pub surface: Option<SurfaceLoads<'a>>,
     /// Whether to return the displacement fields of the modes and of the wrapped rope on all nodes.
     pub fields: bool,
+}
+
+/// Unit loads under which the stress on the surface of a head is computed.
+#[derive(Clone, Copy, Debug)]
+pub struct SurfaceLoads<'a> {
+    /// Angles between which a uniform line load of the rope is a load of its own, ascending from the rope's fixed end
+    /// \[rad\]; b of them.
+    pub breaks: &'a [f64],
+    /// Indices of the loads whose stress is returned, in this order. Loads, by index: the b - 1 line loads; at the rope's
+    /// fixed end 1 N inwards and 1 N towards increasing angles; unit accelerations along x, along y and about the origin;
+    /// unit coordinates of the modes.
+    pub returned: &'a [usize],
 }
 
 /// Rope wrapped around the arc: normal line load `tension / radius` between its fixed end and the point where

@@ -12,7 +12,7 @@ use super::{
     error::ReductionError,
     mesh::Half,
     problem::Problem,
-    request::{ReductionRequest, Wrap},
+    request::{ReductionRequest, SurfaceLoads, Wrap},
     result::{Mode, SurfacePoint, SurfaceStress},
 };
 use nalgebra::Vector3;
@@ -35,15 +35,38 @@ struct SurfaceFace {
     points: [usize; 4],
 }
 
-/// Computes the stress on the surface under each load of the basis, whose intervals lie between the angles
-/// `breaks` \[rad\].
+/// Load of the basis.
+enum UnitLoad<'a> {
+    /// Line load between two angles \[rad\], 1 N in all.
+    Line(f64, f64),
+    /// Force of 1 N at an angle \[rad\], inwards.
+    Inwards(f64),
+    /// Force of 1 N at an angle \[rad\], towards increasing angles.
+    Along(f64),
+    /// Inertial load per unit acceleration of the beam.
+    Acceleration(&'a [[f64; 3]]),
+    /// Unit coordinate of a mode.
+    Mode(&'a Mode),
+}
+
+/// Computes the stress on the surface under the requested loads of the basis.
 pub(super) fn surface(
     problem: &Problem<'_>,
     request: &ReductionRequest<'_>,
     rim: &Rim<'_>,
-    (breaks, modes): (&[f64], &[Mode]),
+    (loads, modes): (&SurfaceLoads<'_>, &[Mode]),
 ) -> Result<SurfaceStress, ReductionError> {
-    let fields = basis(problem, rim, breaks, request, modes)?;
+    let basis = basis(problem, loads.breaks, modes);
+    let field = |&index: &usize| {
+        let count = basis.len();
+        let load = basis.get(index);
+        displacement(
+            problem,
+            rim,
+            load.ok_or(ReductionError::UnitLoad { index, count })?,
+        )
+    };
+    let fields: Vec<Vec<[f64; 3]>> = loads.returned.iter().map(field).collect::<Result<_, _>>()?;
     stress_on_surface(problem, request, &fields)
 }
 
@@ -100,51 +123,68 @@ pub(super) fn stress_on_surface(
     })
 }
 
-/// Returns the displacement field of the half under each load of the basis.
-fn basis(
+/// Returns the loads of the basis in their order.
+fn basis<'a>(problem: &'a Problem<'_>, breaks: &[f64], modes: &'a [Mode]) -> Vec<UnitLoad<'a>> {
+    let lines = breaks
+        .windows(2)
+        .map(|ends| UnitLoad::Line(ends[0], ends[1]));
+    let end = breaks.first().copied();
+    let end = end
+        .into_iter()
+        .flat_map(|psi| [UnitLoad::Inwards(psi), UnitLoad::Along(psi)]);
+    let inertia = problem
+        .inertia
+        .iter()
+        .map(|own| UnitLoad::Acceleration(own));
+    let all = lines.chain(end).chain(inertia);
+    all.chain(modes.iter().map(UnitLoad::Mode)).collect()
+}
+
+/// Returns the displacement field of the half under a load of the basis.
+fn displacement(
     problem: &Problem<'_>,
     rim: &Rim<'_>,
-    breaks: &[f64],
-    request: &ReductionRequest<'_>,
-    modes: &[Mode],
-) -> Result<Vec<Vec<[f64; 3]>>, ReductionError> {
+    load: &UnitLoad<'_>,
+) -> Result<Vec<[f64; 3]>, ReductionError> {
     let count = problem.half.mesh.nodes.len();
-    let mut fields = Vec::new();
-    for ends in breaks.windows(2) {
-        let (anchor, leaves) = (ends[0], ends[1]);
-        let line = Wrap {
-            tension: 1.0 / (leaves - anchor),
-            anchor,
-            leaves,
-        };
-        let mut force = vec![[0.0; 3]; count];
-        for (psi, share) in line.line(PIECES) {
-            let station = rim.station(psi)?;
-            // a newton over the whole width is half a newton on the half
-            station.add_force(&mut force, station.radial, -0.5 * share);
+    Ok(match *load {
+        UnitLoad::Line(anchor, leaves) => {
+            let line = Wrap {
+                tension: 1.0 / (leaves - anchor),
+                anchor,
+                leaves,
+            };
+            let mut force = vec![[0.0; 3]; count];
+            for (psi, share) in line.line(PIECES) {
+                let station = rim.station(psi)?;
+                // a newton over the whole width is half a newton on the half
+                station.add_force(&mut force, station.radial, -0.5 * share);
+            }
+            problem.solve(&force)
         }
-        fields.push(problem.solve(&force));
-    }
-    if let Some(&anchor) = breaks.first() {
-        let station = rim.station(anchor)?;
-        fields.push(problem.solve(&station.force(count, station.radial, -0.5)));
-        fields.push(problem.solve(&station.force(count, station.tangential, 0.5)));
-    }
-    for inertia in &problem.inertia {
-        let field = problem.solve(inertia);
-        fields.push(field.iter().map(|u| u.map(|x| -x)).collect());
-    }
-    let here: BTreeMap<usize, usize> = problem
-        .half
-        .source
-        .iter()
-        .enumerate()
-        .filter(|(_, (_, image))| !image)
-        .map(|(whole, (half, _))| (*half, whole))
-        .collect();
-    let of_half = |mode: &Mode| (0..count).map(|node| mode.field[here[&node]]).collect();
-    fields.extend(modes.iter().take(request.modes).map(of_half));
-    Ok(fields)
+        UnitLoad::Inwards(psi) => {
+            let station = rim.station(psi)?;
+            problem.solve(&station.force(count, station.radial, -0.5))
+        }
+        UnitLoad::Along(psi) => {
+            let station = rim.station(psi)?;
+            problem.solve(&station.force(count, station.tangential, 0.5))
+        }
+        UnitLoad::Acceleration(inertia) => {
+            let field = problem.solve(inertia);
+            field.iter().map(|u| u.map(|x| -x)).collect()
+        }
+        UnitLoad::Mode(mode) => {
+            let whole = problem.half.source.iter().zip(&mode.field);
+            let mut field = vec![[0.0; 3]; count];
+            for ((node, image), moved) in whole {
+                if !image {
+                    field[*node] = *moved;
+                }
+            }
+            field
+        }
+    })
 }
 
 /// Finds the points and faces of the surface of a half.

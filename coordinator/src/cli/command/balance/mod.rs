@@ -205,15 +205,15 @@ fn assess(
             let best = plan.goal.best(&all, bounds);
             Ok(AssessedCrank::new(&machine.name, states, best))
         };
-    let beside = match &simulated.beside {
-        Some((neighbours, machines)) => {
+    let about = match &simulated.about {
+        Some((neighbourhood, machines)) => {
             // a step would hide how the best moment changes
             let anywhere = Bounds {
                 step_n_m: None,
                 ..plan.bounds.clone()
             };
             let machines = machines.iter().map(|own| of_machine(own, &anywhere));
-            Some((neighbours, machines.collect::<anyhow::Result<Vec<_>>>()?))
+            Some((neighbourhood, machines.collect::<anyhow::Result<Vec<_>>>()?))
         }
         None => None,
     };
@@ -221,9 +221,9 @@ fn assess(
     let each = simulated.compared.iter().enumerate();
     each.map(|(k, machine)| {
         let crank = of_machine(machine, &plan.bounds)?;
-        Ok(match &beside {
-            Some((neighbours, beside)) if k == last => {
-                crank.with_intervals(neighbours, beside, &plan.bounds)
+        Ok(match &about {
+            Some((neighbourhood, about)) if k == last => {
+                crank.with_intervals(neighbourhood, about, &plan.bounds)
             }
             _ => crank,
         })

@@ -5,6 +5,7 @@ use super::{
     torque::{Counterweight, Goal, mean_square},
 };
 use crate::cli::argument::hours::Operation;
+use discrepancy::estimate::neighbourhood::QuantityInterval;
 use protocol::{
     case::Case,
     pumping_unit::{Counterweights, Machine, Sensor},
@@ -103,6 +104,13 @@ pub(super) fn notes(
             kilo(after)
         ));
     }
+    let checked = present.intervals.iter().flat_map(|own| &own.states);
+    notes.extend(
+        checked
+            .flatten()
+            .flatten()
+            .find_map(QuantityInterval::doubt),
+    );
     for (operation, state) in plan.operations.iter().zip(&present.states) {
         let Some(measured) = measured(case, operation.condition) else {
             continue;
@@ -175,7 +183,7 @@ fn before_and_after(
 ) -> Table {
     let columns = Columns {
         states: [&present.states[k], &optimum.states[k]],
-        halves: present.intervals.as_ref().map(|own| own.states[k]),
+        intervals: present.intervals.as_ref().map(|own| own.states[k]),
         measured: measured(case, operation.condition).map(|(_, torque)| torque),
     };
     let title = format!(
@@ -195,8 +203,8 @@ fn before_and_after(
 struct Columns<'a> {
     /// With the present and the best counterweight.
     states: [&'a State; 2],
-    /// Half-widths of largest torque, root mean square and energy.
-    halves: Option<[Option<f64>; 3]>,
+    /// Intervals of largest torque, root mean square and energy.
+    intervals: Option<[Option<QuantityInterval>; 3]>,
     measured: Option<&'a [f64]>,
 }
 
@@ -216,8 +224,10 @@ impl Columns<'_> {
     }
 
     fn half(&self, which: usize, factor: f64, digits: usize) -> String {
-        let half = self.halves.and_then(|own| own[which]);
-        half.map_or_else(String::new, |half| format!("± {:.digits$}", factor * half))
+        let own = self.intervals.and_then(|own| own[which]);
+        own.map_or_else(String::new, |own| {
+            format!("± {:.digits$}", factor * own.half_width)
+        })
     }
 
     fn torque(&self) -> Vec<Row> {
@@ -466,13 +476,20 @@ pub(super) fn object(
 
 /// Builds the object of a crank: its goal, its best counterweight, and its state under each condition.
 fn crank(case: &Case, plan: &BalancePlan, own: &AssessedCrank) -> Value {
-    let ci95 = |value: f64, half: Option<f64>| half.map(|half| [value - half, value + half]);
+    let with_interval = |value: f64, interval: Option<QuantityInterval>| {
+        json!({
+            "value": value,
+            "ci95": interval.map(|own| [value - own.half_width, value + own.half_width]),
+            "drawn": interval.map(|own| own.drawn),
+            "drawn_inside": interval.map(|own| own.inside),
+        })
+    };
     let intervals = own.intervals.as_ref();
     let conditions = plan.operations.iter().zip(&own.states).enumerate();
     let conditions = conditions.map(|(k, (operation, state))| {
-        let half = |which: usize| intervals.and_then(|own| own.states[k][which]);
-        let with_interval =
-            |value: f64, which: usize| json!({"value": value, "ci95": ci95(value, half(which))});
+        let with_interval = |value: f64, which: usize| {
+            with_interval(value, intervals.and_then(|own| own.states[k][which]))
+        };
         let measured = measured(case, operation.condition).map(|(_, torque)| {
             let most = torque.iter().copied().fold(f64::NEG_INFINITY, f64::max);
             json!({"largest_n_m": most, "rms_n_m": mean_square(torque).sqrt()})
@@ -499,10 +516,10 @@ fn crank(case: &Case, plan: &BalancePlan, own: &AssessedCrank) -> Value {
     json!({
         "name": own.name,
         "goal_n_m": goal_of(plan.goal, plan, &own.states),
-        "best_moment_n_m": {
-            "value": own.best.moment_n_m,
-            "ci95": ci95(own.best.moment_n_m, intervals.and_then(|own| own.moment_n_m)),
-        },
+        "best_moment_n_m": with_interval(
+            own.best.moment_n_m,
+            intervals.and_then(|own| own.moment_n_m),
+        ),
         "best_phase_deg": own.best.phase_deg,
         "conditions": conditions.collect::<Vec<_>>(),
     })

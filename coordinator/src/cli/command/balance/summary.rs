@@ -3,7 +3,7 @@ use super::{
     options::BalancePlan,
     torque::{Bounds, Counterweight, Goal, Revolution, mean_square},
 };
-use discrepancy::identify::Neighbours;
+use discrepancy::estimate::neighbourhood::{Neighbourhood, QuantityInterval};
 use protocol::pumping_unit::{Machine, Simulation};
 use std::f64::consts::TAU;
 
@@ -45,13 +45,13 @@ pub(super) struct AssessedCrank {
     pub(super) intervals: Option<Intervals>,
 }
 
-/// Half-widths of 95 % intervals, to first order from the covariance of the unknowns.
+/// 95 % intervals, to first order from the covariance of the unknowns.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Intervals {
     /// Under each condition: of the largest torque, the root mean square [N m] and the energy of a day [kWh].
-    pub(super) states: Vec<[Option<f64>; 3]>,
+    pub(super) states: Vec<[Option<QuantityInterval>; 3]>,
     /// Of the best moment [N m].
-    pub(super) moment_n_m: Option<f64>,
+    pub(super) moment_n_m: Option<QuantityInterval>,
 }
 
 impl State {
@@ -76,31 +76,29 @@ impl AssessedCrank {
         }
     }
 
-    /// Returns the crank with intervals from the states and the best counterweights of the machines beside it.
+    /// Returns the crank with intervals from the states and the best counterweights of the machines about it.
     pub(super) fn with_intervals(
         self,
-        neighbours: &Neighbours,
-        beside: &[Self],
+        neighbourhood: &Neighbourhood,
+        about: &[Self],
         bounds: &Bounds,
     ) -> Self {
         // at a bound the best moment does not follow the unknowns
-        let inside = beside
-            .iter()
-            .all(|own| !bounds.ends_at(own.best.moment_n_m));
-        let half = |of: &dyn Fn(&Self) -> f64| {
-            neighbours.half_width(&beside.iter().map(of).collect::<Vec<_>>())
+        let inside = about.iter().all(|own| !bounds.ends_at(own.best.moment_n_m));
+        let interval = |of: &dyn Fn(&Self) -> f64| {
+            neighbourhood.interval(of(&self), &about.iter().map(of).collect::<Vec<_>>())
         };
         let states = (0..self.states.len()).map(|k| {
             [
-                half(&|own| own.states[k].most_n_m),
-                half(&|own| own.states[k].rms_n_m),
-                half(&|own| own.states[k].energy_kwh_per_day),
+                interval(&|own| own.states[k].most_n_m),
+                interval(&|own| own.states[k].rms_n_m),
+                interval(&|own| own.states[k].energy_kwh_per_day),
             ]
         });
         Self {
             intervals: Some(Intervals {
                 states: states.collect(),
-                moment_n_m: half(&|own| own.best.moment_n_m).filter(|_| inside),
+                moment_n_m: interval(&|own| own.best.moment_n_m).filter(|_| inside),
             }),
             ..self
         }

@@ -12,13 +12,12 @@ use case::pumping_unit::{
     HeadSource, QuasiStaticTurn, compare_head, load_head, mesh, quasi_static, wrapped_turn,
 };
 use clap::{Args, ValueEnum};
-use protocol::{
-    pumping_unit::{
-        HeadMesh, Machine, ModeFamily, PumpingUnit, ReduceHeadSpec, ReducedHead, RopePair, RopeWrap,
-    },
-    wire,
+use protocol::pumping_unit::{
+    HeadMesh, Machine, ModeFamily, PumpingUnit, ReduceHeadSpec, ReducedHead, RopePair, RopeWrap,
+    SurfaceRequest,
 };
-pub(in crate::cli::command) use reduce_head::reduce_head;
+use reduce_head::{MEBIBYTE, ROOM};
+pub(in crate::cli::command) use reduce_head::{reduce_head, surface_stress};
 use report::pumping_unit::{
     HeadPicture, head_gauges, head_mode_table, head_pair, head_statics, write_head_modes,
 };
@@ -252,7 +251,7 @@ fn spec(
             modes: twins.modes,
         }),
         wrap,
-        surface_deg: None,
+        surface: None,
         fields: false,
     }
 }
@@ -260,8 +259,8 @@ fn spec(
 /// Number of modes, times those that are simulated, among which the simulated ones are sought.
 const SOUGHT: usize = 4;
 
-/// Builds the job that reduces the head of a case to its lowest symmetric modes, with the stress on its surface. The
-/// rope drives no others; the simulated ones are among them.
+/// Builds the job that reduces the head of a case to its lowest symmetric modes, with its surface, whose stress is
+/// requested apart ([`surface_stress`]). The rope drives no other modes; the simulated ones are among them.
 ///
 /// # Errors
 /// If the crank cannot complete a revolution, or the answer would not fit into one message.
@@ -275,7 +274,10 @@ pub(super) fn surface_spec(
     let modes = (SOUGHT * machine.run.modes).min(MOST_MODES);
     let wrap = hardest(machine, &turn);
     let spec = ReduceHeadSpec {
-        surface_deg: Some(machine.load_breaks_deg()),
+        surface: Some(SurfaceRequest {
+            breaks_deg: machine.load_breaks_deg(),
+            returned: Vec::new(),
+        }),
         ..spec(machine, source, wrap, (modes, vec![ModeFamily::Symmetric]))
     };
     check_size(&spec)?;
@@ -305,9 +307,6 @@ fn mesh(read: &mesh::Mesh) -> HeadMesh {
 
 /// Checks that the head reduction job and its answer each fit into one message.
 fn check_size(spec: &ReduceHeadSpec) -> Result<(), Problem> {
-    const MEBIBYTE: usize = 1 << 20;
-    // what is not the fields of the answer is small beside this
-    const ROOM: usize = wire::BODY_LIMIT - MEBIBYTE;
     let (nodes, elements) = (
         spec.mesh.nodes_m.len(),
         spec.mesh.elements.len() / spec.mesh.kind.nodes(),

@@ -11,44 +11,25 @@ const SAME_FREQUENCY: f64 = 0.02;
 /// Least modal assurance criterion of the two shapes.
 const SAME_SHAPE: f64 = 0.99;
 
-/// Surface of the head that is assessed.
-pub(super) struct Body<'a> {
-    surface: &'a HeadSurface,
-    /// Stress under each load of `HeadLoads::curves`.
-    unit_stress: Vec<Vec<[f32; 6]>>,
-    pub(super) pins: Vec<Pin>,
-    /// Points that are assessed: those that are not held.
-    pub(super) points: Vec<usize>,
-}
+/// Modes of the machine's table among those of the reduced head: index and sign of each; `None` for a mode that the
+/// rope does not drive.
+pub(super) struct TableModes(Vec<Option<(usize, f32)>>);
 
-impl<'a> Body<'a> {
-    /// Finds the modes of the machine's table among those of the reduced head, and the pins in its mesh.
+impl TableModes {
+    /// Finds the modes.
     ///
     /// # Errors
     /// If a mode that the rope drives has no counterpart: the tables are of another head.
-    pub(super) fn new(
-        read: &mesh::Mesh,
-        reduced: &'a ReducedHead,
-        machine: &Machine,
-    ) -> Result<Self, Problem> {
-        let surface = reduced.surface.as_ref().ok_or_else(|| Problem {
-            message: "the worker returned no stress of the surface".to_owned(),
-            remedy: "use workers of the same build".to_owned(),
-        })?;
+    pub(super) fn find(reduced: &ReducedHead, machine: &Machine) -> Result<Self, Problem> {
         let table = &machine.modal_head;
-        let statics = surface.stress_mpa.len().saturating_sub(reduced.modes.len());
-        let mut unit_stress = surface.stress_mpa[..statics].to_vec();
-        for k in 0..machine.run.modes.min(table.frequencies_hz.len()) {
+        let counterpart = |k: usize| {
             let own = shape(&table.radial[k], &table.tangential[k]);
             if !is_driven(table, &own) {
-                unit_stress.push(vec![[0.0; 6]; surface.held.len()]);
-                continue;
+                return Ok(None);
             }
-            let found = reduced
-                .modes
-                .iter()
-                .position(|mode| same(table.frequencies_hz[k], &own, mode));
-            let found = found.ok_or_else(|| Problem {
+            let mut modes = reduced.modes.iter().enumerate();
+            let found = modes.find(|(_, mode)| same(table.frequencies_hz[k], &own, mode));
+            let (at, mode) = found.ok_or_else(|| Problem {
                 message: format!(
                     "mode {} of the case's tables, {:.2} Hz, is none of its mesh",
                     k + 1,
@@ -56,12 +37,67 @@ impl<'a> Body<'a> {
                 ),
                 remedy: "write tables of this mesh: horsehead head CASE --write".to_owned(),
             })?;
-            let mode = &reduced.modes[found];
             let other = shape(&mode.radial, &mode.tangential);
             let sign = if dot(&own, &other) < 0.0 { -1.0 } else { 1.0 };
-            let stress = surface.stress_mpa[statics + found].iter();
-            unit_stress.push(stress.map(|stress| stress.map(|s| sign * s)).collect());
-        }
+            Ok(Some((at, sign)))
+        };
+        let simulated = machine.run.modes.min(table.frequencies_hz.len());
+        let all = (0..simulated).map(counterpart);
+        Ok(Self(all.collect::<Result<_, _>>()?))
+    }
+
+    /// Returns the indices of the unit loads of the surface under which its stress is needed: those that are no modes,
+    /// `statics` in number, and the driven modes.
+    pub(super) fn loads(&self, statics: usize) -> Vec<u32> {
+        #[expect(
+            clippy::cast_possible_truncation,
+            reason = "a reduction has at most hundreds of loads"
+        )]
+        let index = |load: usize| load as u32;
+        let driven = self.0.iter().flatten().map(|(at, _)| statics + at);
+        (0..statics).chain(driven).map(index).collect()
+    }
+
+    /// Returns the stress under each load of `HeadLoads::curves` from that under each of [`Self::loads`].
+    fn unit_stress(&self, statics: usize, mut stress: Vec<Vec<[f32; 6]>>) -> Vec<Vec<[f32; 6]>> {
+        let points = stress.first().map_or(0, Vec::len);
+        let driven = stress.split_off(statics.min(stress.len()));
+        let mut driven = driven.into_iter();
+        stress.extend(self.0.iter().map(|own| {
+            let found = own.zip(own.and_then(|_| driven.next()));
+            found.map_or_else(
+                || vec![[0.0; 6]; points],
+                |((_, sign), mut of_mode)| {
+                    for entry in of_mode.iter_mut().flatten() {
+                        *entry *= sign;
+                    }
+                    of_mode
+                },
+            )
+        }));
+        stress
+    }
+}
+
+/// Surface of the head that is assessed.
+pub(super) struct Body {
+    surface: HeadSurface,
+    /// Stress under each load of `HeadLoads::curves`.
+    unit_stress: Vec<Vec<[f32; 6]>>,
+    pub(super) pins: Vec<Pin>,
+    /// Points that are assessed: those that are not held.
+    pub(super) points: Vec<usize>,
+}
+
+impl Body {
+    /// Combines the surface with the stress under the loads of `modes`, of which the first `statics` are no modes, and
+    /// finds the pins in the mesh.
+    pub(super) fn new(
+        read: &mesh::Mesh,
+        surface: HeadSurface,
+        (modes, statics): (&TableModes, usize),
+        stress: Vec<Vec<[f32; 6]>>,
+    ) -> Self {
         let pins = ["pin_a", "pin_b"].iter().zip(["A", "B"]);
         let pins = pins.filter_map(|(group, name)| {
             let nodes = read.surfaces.get(*group)?.iter();
@@ -69,12 +105,12 @@ impl<'a> Body<'a> {
             Pin::around(name, &places.collect::<Vec<_>>())
         });
         let free = |point: &usize| !surface.held[*point];
-        Ok(Self {
-            surface,
-            unit_stress,
+        Self {
+            unit_stress: modes.unit_stress(statics, stress),
             pins: pins.collect(),
             points: (0..surface.held.len()).filter(free).collect(),
-        })
+            surface,
+        }
     }
 
     /// Returns the surface as the assessment takes it.
@@ -86,8 +122,8 @@ impl<'a> Body<'a> {
     }
 
     /// Returns the surface, with positions and faces.
-    pub(super) const fn surface(&self) -> &'a HeadSurface {
-        self.surface
+    pub(super) const fn surface(&self) -> &HeadSurface {
+        &self.surface
     }
 
     /// Returns the position of a point \[m\].

@@ -9,13 +9,13 @@ use crate::cli::{
     argument::{case::case_folder, output::OutputChoice, workers::WorkersChoice},
     output::{assessment::show, problem::EXIT_CODES, progress::StageDisplay},
 };
-use body::Body;
+use body::{Body, TableModes};
 use case::pumping_unit::{HeadSource, load_meshed_head};
 use clap::Args;
 use options::{LifeOptions, LifePlan};
 use protocol::{
     case::Case,
-    pumping_unit::{Machine, PumpingUnit, Simulation},
+    pumping_unit::{Machine, PumpingUnit, ReduceHeadSpec, Simulation, SurfaceRequest},
     wire::WireError,
 };
 use report::{
@@ -31,6 +31,7 @@ use run::{
 };
 use spots::{AssessedVariant, Spread, Variant};
 use std::path::PathBuf;
+use study::{Evaluator, Stop};
 use support::Problem;
 
 /// Say where the back head cracks first, and after how many years.
@@ -78,36 +79,31 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
              replaces them",
         );
     }
-    let spec = head.as_ref();
-    let spec = spec
-        .map(|(read, source)| {
-            same_head(&read.machine, &unit.machine)?;
-            super::head::surface_spec(&unit, source)
-        })
-        .transpose()?;
+    let head = head.map(|(read, source)| {
+        same_head(&read.machine, &unit.machine)?;
+        let spec = super::head::surface_spec(&unit, &source)?;
+        anyhow::Ok((source, spec))
+    });
+    let head = head.transpose()?;
     let conditions: Vec<usize> = plan.conditions().collect();
     let run = target.begin(arguments.run.as_deref(), LifeSettings)?;
-    let (reduced, simulated) = session.work(
+    let (body, simulated) = session.work(
         &run,
         &arguments.workers.session()?,
         async |dispatch, stop| {
             let mut display = StageDisplay::new();
-            let reduced = match &spec {
-                Some(spec) => Some(super::head::reduce_head(dispatch, spec, stop).await?),
+            let body = match &head {
+                Some((source, spec)) => {
+                    Some(surface_of(dispatch, (source, spec), &unit.machine, stop).await?)
+                }
                 None => None,
             };
             let simulated =
                 simulate_machines(dispatch, &target, (&conditions, 0), &mut display, stop).await;
             display.clear();
-            Ok((reduced, simulated?))
+            Ok((body, simulated?))
         },
     )?;
-    let surface = head
-        .as_ref()
-        .map(|(_, source)| source)
-        .zip(reduced.as_ref());
-    let body = surface.map(|(source, reduced)| Body::new(&source.mesh, reduced, &unit.machine));
-    let body = body.transpose()?;
     let assessed = assess(body.as_ref(), &plan, &simulated)?;
     let mut notes = spots::notes(&plan, &assessed);
     if body.is_none() {
@@ -121,7 +117,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         topic: Topic::Life,
         lead: output::lead(&plan, &assessed),
         tables: output::tables(&plan, &assessed),
-        figures: match (&body, surface, assessed.last()) {
+        figures: match (&body, &head, assessed.last()) {
             (Some(body), Some((source, _)), Some(last)) => figures((body, source), &plan, last),
             _ => Vec::new(),
         },
@@ -137,20 +133,36 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     )
 }
 
+/// Reduces the head and requests the stress on its surface under the loads of the simulations.
+async fn surface_of(
+    evaluator: &mut impl Evaluator,
+    (source, spec): (&HeadSource, &ReduceHeadSpec),
+    machine: &Machine,
+    stop: &mut Stop,
+) -> anyhow::Result<Body> {
+    let mut reduced = super::head::reduce_head(evaluator, spec, stop).await?;
+    let modes = TableModes::find(&reduced, machine)?;
+    let statics = spec.surface.as_ref().map_or(0, SurfaceRequest::statics);
+    let surface = reduced.surface.take().unwrap_or_default();
+    let loads = modes.loads(statics);
+    let stress = super::head::surface_stress(evaluator, spec, (&surface, &loads), stop).await?;
+    Ok(Body::new(&source.mesh, surface, (&modes, statics), stress))
+}
+
 /// Assesses all machines; the last of those that are compared with its spread.
 fn assess(
-    body: Option<&Body<'_>>,
+    body: Option<&Body>,
     plan: &LifePlan,
     simulated: &SimulatedMachines,
 ) -> Result<Vec<AssessedVariant>, WireError> {
     let compared = variants(&simulated.compared)?;
     let others = variants(&simulated.others)?;
-    let beside = simulated.beside.as_ref();
-    let neighbours = beside.map(|(_, machines)| variants(machines)).transpose()?;
+    let about = simulated.about.as_ref();
+    let machines = about.map(|(_, machines)| variants(machines)).transpose()?;
     let spread = Spread {
         others: &others,
-        neighbours: beside
-            .zip(neighbours.as_ref())
+        about: about
+            .zip(machines.as_ref())
             .map(|((own, _), variants)| (own, &variants[..])),
     };
     Ok(spots::assess(body, plan, &compared, &spread))
@@ -172,7 +184,7 @@ fn variants(machines: &[SimulatedMachine]) -> Result<Vec<Variant<'_>>, WireError
 
 /// Draws the head of a variant, coloured by life, and the damage of its first hot spot over the crank angle.
 fn figures(
-    (body, source): (&Body<'_>, &HeadSource),
+    (body, source): (&Body, &HeadSource),
     plan: &LifePlan,
     variant: &AssessedVariant,
 ) -> Vec<report::Figure> {

@@ -115,7 +115,9 @@ fn life(plan: &LifePlan, own: &Life) -> Value {
     json!({
         "life_years": {
             "value": finite(own.years),
-            "ci95": own.ci95,
+            "ci95": own.ci95(),
+            "drawn": own.log_interval.map(|own| own.drawn),
+            "drawn_inside": own.log_interval.map(|own| own.inside),
             "over_fits": own.over_fits.map(|ends| ends.map(finite)),
         },
         "damage": conditions.collect::<Vec<_>>(),
@@ -148,7 +150,7 @@ pub(super) fn lead(plan: &LifePlan, assessed: &[AssessedVariant]) -> String {
         (None, None) => return "Nothing is assessed.".to_owned(),
     };
     let ends = |[low, high]: [f64; 2]| format!("{} to {}", years(low), years(high));
-    let spread = match (life.ci95, life.over_fits) {
+    let spread = match (life.ci95(), life.over_fits) {
         (Some(own), _) => format!(" (95 %: {})", ends(own)),
         (None, Some(own)) => format!(" (over the fits of the search: {})", ends(own)),
         (None, None) => String::new(),
@@ -190,7 +192,7 @@ pub(super) fn csv(assessed: &[AssessedVariant]) -> anyhow::Result<String> {
     ])?;
     let optional = |value: Option<f64>| value.map_or_else(String::new, |x| x.to_string());
     let of_life = |own: &Life| {
-        let [low, high] = own.ci95.map_or([None; 2], |ends| ends.map(Some));
+        let [low, high] = own.ci95().map_or([None; 2], |ends| ends.map(Some));
         let life = own.years.is_finite().then_some(own.years);
         [
             own.range_mpa.to_string(),
@@ -243,7 +245,7 @@ pub(super) fn tables(plan: &LifePlan, assessed: &[AssessedVariant]) -> Vec<Table
     ];
     let ranged = |own: &Life| {
         let ends = |[low, high]: [f64; 2]| format!("{} to {}", years(low), years(high));
-        let interval = own.ci95.map(|own| format!("95 %: {}", ends(own)));
+        let interval = own.ci95().map(|own| format!("95 %: {}", ends(own)));
         let over_fits = || own.over_fits.map(|own| format!("fits: {}", ends(own)));
         interval.or_else(over_fits).unwrap_or_default()
     };

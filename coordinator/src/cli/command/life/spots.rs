@@ -4,7 +4,7 @@ use super::{
     options::LifePlan,
     place::{Bearing, nearest},
 };
-use discrepancy::identify::Neighbours;
+use discrepancy::estimate::neighbourhood::{Neighbourhood, QuantityInterval};
 use fatigue::{Assessment, LoadPeriod, PointDamage, Residue, StressCycle, cycles};
 use protocol::pumping_unit::{HeadLoads, Simulation};
 use report::pumping_unit::SECTOR_DEG;
@@ -29,8 +29,8 @@ pub(super) struct Variant<'a> {
 pub(super) struct Life {
     /// Years until the damage is one; infinite where no cycle does any.
     pub(super) years: f64,
-    /// 95 % interval of the life from the covariance of the unknowns \[years\]; `None` where there is none.
-    pub(super) ci95: Option<[f64; 2]>,
+    /// 95 % interval of the life's logarithm, which is taken as linear in the unknowns; `None` where there is none.
+    pub(super) log_interval: Option<QuantityInterval>,
     /// Smallest and largest life over this and the other fits that the run saw; `None` without any.
     pub(super) over_fits: Option<[f64; 2]>,
     /// Damage of one revolution under each condition.
@@ -42,6 +42,14 @@ pub(super) struct Life {
     pub(super) load_factor: Option<f64>,
     /// Largest range of the counted stress \[MPa\].
     pub(super) range_mpa: f64,
+}
+
+impl Life {
+    /// Returns the 95 % interval of the life from the covariance of the unknowns \[years\]; `None` where there is none.
+    pub(super) fn ci95(&self) -> Option<[f64; 2]> {
+        let half = self.log_interval?.half_width;
+        Some([self.years * (-half).exp(), self.years * half.exp()])
+    }
 }
 
 /// Point of the surface where the life is shortest.
@@ -73,13 +81,13 @@ pub(super) struct AssessedVariant {
 pub(super) struct Spread<'a> {
     /// Fits of other families that the run saw.
     pub(super) others: &'a [Variant<'a>],
-    /// Individuals beside the optimum, with their simulations; `None` where lives have no interval.
-    pub(super) neighbours: Option<(&'a Neighbours, &'a [Variant<'a>])>,
+    /// Individuals about the optimum, with their simulations; `None` where lives have no interval.
+    pub(super) about: Option<(&'a Neighbourhood, &'a [Variant<'a>])>,
 }
 
 /// Assesses the gauges and, where there is a mesh, the surface for each variant, with the spread of the last.
 pub(super) fn assess(
-    body: Option<&Body<'_>>,
+    body: Option<&Body>,
     plan: &LifePlan,
     variants: &[Variant<'_>],
     spread: &Spread<'_>,
@@ -98,13 +106,13 @@ pub(super) fn assess(
 }
 
 fn assess_variant(
-    body: Option<&Body<'_>>,
+    body: Option<&Body>,
     plan: &LifePlan,
     variant: &Variant<'_>,
     spread: &Spread<'_>,
 ) -> AssessedVariant {
-    let beside = spread.neighbours.map_or(&[][..], |(_, own)| own);
-    let neighbours = spread.neighbours.map(|(own, _)| own);
+    let about = spread.about.map_or(&[][..], |(_, own)| own);
+    let neighbourhood = spread.about.map(|(own, _)| own);
     let gauge = |gauge: usize| {
         let counted = |variant: &Variant<'_>| -> Vec<Vec<StressCycle>> {
             let curves = variant.simulations.iter().map(|own| &own.gauge_mpa[gauge]);
@@ -113,9 +121,9 @@ fn assess_variant(
                 .collect()
         };
         let years = |other: &Variant<'_>| years(plan, &counted(other), 1.0);
-        let all = [spread.others, beside];
+        let all = [spread.others, about];
         let all = all.map(|all| all.iter().map(years).collect());
-        life(plan, &counted(variant), all, neighbours)
+        life(plan, &counted(variant), all, neighbourhood)
     };
     let gauges = (0..4).map(gauge).collect();
     let assessed = AssessedVariant {
@@ -134,7 +142,7 @@ fn assess_variant(
 /// Adds the lives of the surface to those of the gauges.
 fn with_surface(
     assessed: AssessedVariant,
-    body: &Body<'_>,
+    body: &Body,
     plan: &LifePlan,
     variant: &Variant<'_>,
     spread: &Spread<'_>,
@@ -159,8 +167,8 @@ fn with_surface(
         let counted = counted.map(|period| surface.cycles(own.point, period, own.plane.as_ref()));
         shares_by_sector(plan, &counted.collect::<Vec<_>>(), variant)
     });
-    let beside = spread.neighbours.map_or(&[][..], |(_, own)| own);
-    let [of_others, of_beside] = [spread.others, beside].map(|all| all_periods(plan, all));
+    let about = spread.about.map_or(&[][..], |(_, own)| own);
+    let [of_others, of_about] = [spread.others, about].map(|all| all_periods(plan, all));
     let spot = |own: &&PointDamage| {
         let place_m = body.place_m(own.point);
         let counted = |periods: &[LoadPeriod<'_>]| -> Vec<Vec<StressCycle>> {
@@ -175,8 +183,8 @@ fn with_surface(
             life: life(
                 plan,
                 &counted(&of_variant),
-                [&of_others, &of_beside].map(|all| all.iter().map(years).collect()),
-                spread.neighbours.map(|(own, _)| own),
+                [&of_others, &of_about].map(|all| all.iter().map(years).collect()),
+                spread.about.map(|(own, _)| own),
             ),
             von_mises_mpa: own.largest_von_mises,
         }
@@ -190,7 +198,7 @@ fn with_surface(
 }
 
 /// Returns the worst of points in descending order of their damage, each at least [`APART_M`] from those before it.
-fn apart<'a>(body: &Body<'_>, damages: &'a [PointDamage]) -> Vec<&'a PointDamage> {
+fn apart<'a>(body: &Body, damages: &'a [PointDamage]) -> Vec<&'a PointDamage> {
     let mut worst: Vec<&PointDamage> = Vec::new();
     for own in damages {
         let place = body.place_m(own.point);
@@ -289,12 +297,12 @@ fn years(plan: &LifePlan, counted: &[Vec<StressCycle>], factor: f64) -> f64 {
 }
 
 /// Computes the life of a place from the cycles of a revolution under each condition, and its spread from the lives
-/// with the other fits and with the individuals beside the optimum.
+/// with the other fits and with the individuals about the optimum.
 fn life(
     plan: &LifePlan,
     counted: &[Vec<StressCycle>],
-    [others, beside]: [Vec<f64>; 2],
-    neighbours: Option<&Neighbours>,
+    [others, about]: [Vec<f64>; 2],
+    neighbourhood: Option<&Neighbourhood>,
 ) -> Life {
     let each: Vec<f64> = counted
         .iter()
@@ -310,13 +318,14 @@ fn life(
         .collect();
     let total: f64 = a_day.iter().sum();
     let ranges = counted.iter().flatten().map(|own| own.range);
+    let logs: Vec<f64> = about.iter().map(|own| own.ln()).collect();
     let range_over = |others: &[f64]| {
         let fold = |of: fn(f64, f64) -> f64| others.iter().copied().fold(now, of);
         [fold(f64::min), fold(f64::max)]
     };
     Life {
         years: now,
-        ci95: neighbours.and_then(|own| interval(now, &beside, own)),
+        log_interval: neighbourhood.and_then(|own| own.interval(now.ln(), &logs)),
         over_fits: (!others.is_empty()).then(|| range_over(&others)),
         shares: a_day
             .iter()
@@ -326,16 +335,6 @@ fn life(
         load_factor: load_factor(plan.target_years, &years_at),
         range_mpa: ranges.fold(0.0, f64::max),
     }
-}
-
-/// Returns the 95 % interval of a life, of which the logarithm is taken as linear in the unknowns, from the lives of the
-/// individuals beside it; `None` where one has no end.
-fn interval(years: f64, beside: &[f64], neighbours: &Neighbours) -> Option<[f64; 2]> {
-    let logs: Vec<f64> = beside.iter().map(|own| own.ln()).collect();
-    let half = neighbours.half_width(&logs)?;
-    years
-        .is_finite()
-        .then(|| [years * (-half).exp(), years * half.exp()])
 }
 
 /// Finds the factor on all stresses with which the life is the target, by bisection of its logarithm: the life falls
@@ -370,6 +369,12 @@ pub(super) fn notes(plan: &LifePlan, assessed: &[AssessedVariant]) -> Vec<String
             ));
         }
     }
+    let lives = assessed.last().into_iter().flat_map(|own| {
+        let spots = own.hot_spots.iter().map(|spot| &spot.life);
+        spots.chain(&own.gauges)
+    });
+    let mut intervals = lives.filter_map(|life| life.log_interval);
+    notes.extend(intervals.find_map(|own| own.doubt()));
     notes
 }
 

@@ -2,23 +2,56 @@
 //! unit loads.
 use super::super::{arc::Rim, mesh::Half, problem::Problem, surface::stress_on_surface};
 use super::*;
-use crate::flexible::SurfacePoint;
+use crate::flexible::{ReductionError, SurfaceLoads, SurfacePoint};
 
 /// Angles of the rope's arc on [`mirrored`], about [`CENTER`] \[rad\].
 const BREAKS: [f64; 4] = [0.04, 0.06, 0.09, 0.12];
 const CENTER: [f64; 2] = [-2.0, 0.0];
 
-fn surface_of(mesh: &Mesh, breaks: &[f64]) -> SurfaceStress {
+/// Returns the stress under some of the loads: those of the intervals, two forces if there are any, three accelerations
+/// and two modes.
+fn surface_under(
+    mesh: &Mesh,
+    breaks: &[f64],
+    returned: &[usize],
+) -> Result<SurfaceStress, ReductionError> {
     let asked = ReductionRequest {
         center: CENTER,
-        surface: Some(breaks),
+        surface: Some(SurfaceLoads { breaks, returned }),
         modes: 2,
         fields: false,
         ..request(mesh, &[], &[Family::Symmetric])
     };
-    let reduced = reduce(&asked).unwrap();
+    let reduced = reduce(&asked)?;
     assert!(reduced.modes.iter().all(|mode| mode.field.is_empty()));
-    reduced.surface.unwrap()
+    Ok(reduced.surface.unwrap())
+}
+
+fn surface_of(mesh: &Mesh, breaks: &[f64]) -> SurfaceStress {
+    let statics = breaks.len().saturating_sub(1) + if breaks.is_empty() { 3 } else { 5 };
+    let all: Vec<usize> = (0..statics + 2).collect();
+    surface_under(mesh, breaks, &all).unwrap()
+}
+
+/// Checks that parts of the loads, in any order, have the stress that they have together, and that a load beyond the last
+/// is refused.
+#[test]
+fn loads_can_be_asked_for_in_parts() {
+    let mesh = mirrored();
+    let all = surface_of(&mesh, &BREAKS);
+    assert_eq!(all.stress.len(), 10);
+    for part in [&[9, 0, 4][..], &[], &[7]] {
+        let own = surface_under(&mesh, &BREAKS, part).unwrap();
+        assert_eq!(own.points.len(), all.points.len());
+        let expected: Vec<_> = part.iter().map(|&load| all.stress[load].clone()).collect();
+        assert_eq!(own.stress, expected);
+    }
+    let beyond = surface_under(&mesh, &BREAKS, &[3, 10]).unwrap_err();
+    let expected = ReductionError::UnitLoad {
+        index: 10,
+        count: 10,
+    };
+    assert_eq!(beyond, expected);
 }
 
 /// Checks that bricks and tetrahedra under the weight of a beam have the bending stress of beam theory on its top, away
