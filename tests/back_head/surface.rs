@@ -1,7 +1,7 @@
 //! Stress on the surface of the shipped head against `CalculiX` and against the gauges of a simulation.
 use crate::*;
 use simulation::{
-    flexible::{SurfacePoint, SurfaceStress},
+    flexible::{SurfaceLoads, SurfacePoint, SurfaceStress},
     observe::Recorder,
     run::simulate,
 };
@@ -14,6 +14,8 @@ use std::collections::BTreeMap;
 const REFERENCE: &str = include_str!("calculix_surface.csv");
 
 fn surface(breaks: &[f64], modes: usize, stations: &[f64]) -> Reduction {
+    // intervals, two forces at the fixed end, three accelerations, modes
+    let returned: Vec<usize> = (0..breaks.len() + 4 + modes).collect();
     reduce(&ReductionRequest {
         mesh: &shipped_mesh(),
         steel: STEEL,
@@ -26,7 +28,10 @@ fn surface(breaks: &[f64], modes: usize, stations: &[f64]) -> Reduction {
         modes,
         families: &[Family::Symmetric],
         patterns: &[],
-        surface: Some(breaks),
+        surface: Some(SurfaceLoads {
+            breaks,
+            returned: &returned,
+        }),
         fields: false,
     })
     .unwrap()

@@ -3,7 +3,7 @@
 //! `tests/determinism.sh` builds this test for several instruction sets and optimisation levels; each build
 //! must reproduce the digests below.
 use simulation::flexible::{
-    Family, Gauge, Mesh, Pair, Reduction, ReductionRequest, Steel, Wrap, reduce,
+    Family, Gauge, Mesh, Pair, Reduction, ReductionRequest, Steel, SurfaceLoads, Wrap, reduce,
 };
 use simulation::reference;
 use std::process::Command;
@@ -106,7 +106,10 @@ fn reduced() -> Reduction {
         modes: 6,
         families: &[Family::Symmetric, Family::Antisymmetric],
         patterns: &[],
-        surface: Some(&[2.2, 2.8, 3.4]),
+        surface: Some(SurfaceLoads {
+            breaks: &[2.2, 2.8, 3.4],
+            returned: &[0, 1, 2, 3, 4, 5, 6, 7],
+        }),
         fields: true,
     })
     .unwrap()
@@ -136,6 +139,8 @@ fn head() -> String {
     }
     numbers.extend(reduction.wrap_field.iter().flatten());
     numbers.extend(reduction.wrap_stress.iter().flatten());
+    let surface = reduction.surface.unwrap();
+    numbers.extend(surface.stress.iter().flatten().flatten());
     assert!(numbers.iter().all(|x| x.is_finite()));
     format!("head {:016x}", hash(numbers.iter().map(|x| x.to_bits())))
 }

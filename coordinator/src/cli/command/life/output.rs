@@ -97,6 +97,7 @@ fn spot(plan: &LifePlan, own: &HotSpot) -> Value {
         "near": own.bearing.map(|own| format!("pin {}", own.pin)),
         "angle_deg": own.bearing.map(|own| own.angle_deg),
         "distance_m": own.bearing.map(|own| own.distance_m),
+        "inner_edge": own.inner_edge,
         "von_mises_mpa": own.von_mises_mpa,
     });
     if let (Some(said), Value::Object(more)) = (said.as_object_mut(), life(plan, &own.life)) {
@@ -144,7 +145,12 @@ pub(super) fn lead(plan: &LifePlan, assessed: &[AssessedVariant]) -> String {
                     1e3 * own.distance_m
                 )
             });
-            (place, &spot.life)
+            let edge = if spot.inner_edge {
+                " at an inner edge,"
+            } else {
+                ""
+            };
+            (place + edge, &spot.life)
         }
         (None, Some((number, life))) => (format!(" of the gauges at {number},"), life),
         (None, None) => return "Nothing is assessed.".to_owned(),
@@ -189,6 +195,7 @@ pub(super) fn csv(assessed: &[AssessedVariant]) -> anyhow::Result<String> {
         "life_low",
         "life_high",
         "load_factor",
+        "inner_edge",
     ])?;
     let optional = |value: Option<f64>| value.map_or_else(String::new, |x| x.to_string());
     let of_life = |own: &Life| {
@@ -214,12 +221,14 @@ pub(super) fn csv(assessed: &[AssessedVariant]) -> anyhow::Result<String> {
             ];
             cells.extend(own.place_m.map(|x| x.to_string()));
             cells.extend(of_life(&own.life));
+            cells.push(own.inner_edge.to_string());
             writer.write_record(cells)?;
         }
         for (number, own) in (1..).zip(&variant.gauges) {
             let mut cells = vec![variant.name.clone(), format!("gauge {number}")];
             cells.resize(8, String::new());
             cells.extend(of_life(own));
+            cells.push(String::new());
             writer.write_record(cells)?;
         }
     }
@@ -238,6 +247,7 @@ pub(super) fn tables(plan: &LifePlan, assessed: &[AssessedVariant]) -> Vec<Table
         "angle deg",
         "from the hole mm",
         "z mm",
+        "edge",
         "range MPa",
         "life years",
         "spread",
@@ -265,6 +275,7 @@ pub(super) fn tables(plan: &LifePlan, assessed: &[AssessedVariant]) -> Vec<Table
                 of_pin(&|own| format!("{:.0}", own.angle_deg)),
                 of_pin(&|own| millimetres(own.distance_m)),
                 millimetres(own.place_m[2]),
+                if own.inner_edge { "inner" } else { "" }.to_owned(),
                 format!("{:.1}", own.life.range_mpa),
                 years(own.life.years),
                 ranged(&own.life),

@@ -1,4 +1,8 @@
-//! Place of a point of the head relative to the pins that hold it.
+//! Place of a point of the head relative to the pins that hold it, and to the inner edges of its surface.
+use protocol::pumping_unit::HeadSurface;
+
+/// Least rise of a face above the plane of another at an inner edge, as the sine of the angle between them.
+const RISE: f64 = 0.1;
 
 /// Pin that holds the head, across its width.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,6 +62,28 @@ pub(super) fn nearest(pins: &[Pin], place_m: &[f64; 3]) -> Option<Bearing> {
     all.min_by(|a, b| a.distance_m.total_cmp(&b.distance_m))
 }
 
+/// Returns whether a surface has an inner edge at a point: another face there rises above its plane, so that the material
+/// fills more than half of the space around. Without a fillet the stress at such an edge has no limit as a mesh is refined.
+pub(super) fn is_at_inner_edge(surface: &HeadSurface, point: usize) -> bool {
+    let (place, normal) = (surface.places_m[point], surface.normals[point]);
+    let offset = |from: usize| {
+        let to = surface.places_m[from];
+        [0, 1, 2].map(|axis| to[axis] - place[axis])
+    };
+    let length = |v: &[f64; 3]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let corners = |face: &[u32; 4]| face.map(|corner| corner as usize);
+    let meets = |corner: usize| corner != point && length(&offset(corner)) <= 0.0;
+    surface.faces.iter().map(corners).any(|corners| {
+        if !corners.into_iter().any(meets) {
+            return false;
+        }
+        let across = corners.map(offset);
+        let center = [0, 1, 2].map(|axis| across.iter().map(|own| own[axis]).sum::<f64>());
+        let above = center.iter().zip(normal).map(|(x, n)| x * f64::from(n));
+        above.sum::<f64>() > RISE * length(&center)
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -82,5 +108,36 @@ mod tests {
         let found = nearest(&pins, &[-1.05, -0.35, 0.0]).unwrap();
         assert_eq!((found.pin, found.angle_deg.round()), ("B", 180.0));
         assert!(nearest(&[], &[0.0; 3]).is_none() && Pin::around("A", &[]).is_none());
+    }
+
+    /// Checks a floor that ends at a rising wall on one side and at a falling one on the other: points 0 to 3 are those of
+    /// the floor, each wall has its own at the common edge.
+    #[test]
+    fn an_inner_edge_lies_where_another_face_rises() {
+        let places_m = [
+            [0.0, 0.0, 0.0],
+            [1.0, 0.0, 0.0],
+            [1.0, 1.0, 0.0],
+            [0.0, 1.0, 0.0],
+            [1.0, 0.0, 0.0],
+            [1.0, 1.0, 0.0],
+            [1.0, 1.0, 1.0],
+            [1.0, 0.0, 1.0],
+            [0.0, 0.0, 0.0],
+            [0.0, 1.0, 0.0],
+            [0.0, 1.0, -1.0],
+            [0.0, 0.0, -1.0],
+        ];
+        let surface = HeadSurface {
+            places_m: places_m.to_vec(),
+            normals: [[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [-1.0, 0.0, 0.0]]
+                .into_iter()
+                .flat_map(|normal| [normal; 4])
+                .collect(),
+            faces: vec![[0, 1, 2, 3], [4, 7, 6, 5], [8, 9, 10, 11]],
+            ..HeadSurface::default()
+        };
+        let found: Vec<usize> = (0..12).filter(|&k| is_at_inner_edge(&surface, k)).collect();
+        assert_eq!(found, [1, 2, 4, 5]);
     }
 }

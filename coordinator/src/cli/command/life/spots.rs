@@ -2,7 +2,7 @@
 use super::{
     body::Body,
     options::LifePlan,
-    place::{Bearing, nearest},
+    place::{Bearing, is_at_inner_edge, nearest},
 };
 use discrepancy::estimate::neighbourhood::{Neighbourhood, QuantityInterval};
 use fatigue::{Assessment, LoadPeriod, PointDamage, Residue, StressCycle, cycles};
@@ -57,6 +57,7 @@ impl Life {
 pub(super) struct HotSpot {
     pub(super) place_m: [f64; 3],
     pub(super) bearing: Option<Bearing>,
+    pub(super) inner_edge: bool,
     pub(super) life: Life,
     /// Largest equivalent stress of von Mises \[MPa\].
     pub(super) von_mises_mpa: f64,
@@ -180,6 +181,7 @@ fn with_surface(
         HotSpot {
             place_m,
             bearing: nearest(&body.pins, &place_m),
+            inner_edge: is_at_inner_edge(body.surface(), own.point),
             life: life(
                 plan,
                 &counted(&of_variant),
@@ -368,6 +370,16 @@ pub(super) fn notes(plan: &LifePlan, assessed: &[AssessedVariant]) -> Vec<String
                 variant.name, plan.yield_mpa
             ));
         }
+    }
+    let spots = assessed.last().map_or(&[][..], |own| &own.hot_spots);
+    let at_edges = spots.iter().filter(|own| own.inner_edge).count();
+    if at_edges > 0 {
+        notes.push(format!(
+            "{at_edges} of {} hot spots lie at an inner edge of the mesh: without the fillet or weld of the real part, stress \
+             there grows as the mesh is refined, and the life falls; compare them with one another and between machines, and \
+             take years from a mesh with the fillet",
+            spots.len()
+        ));
     }
     let lives = assessed.last().into_iter().flat_map(|own| {
         let spots = own.hot_spots.iter().map(|spot| &spot.life);
