@@ -11,17 +11,21 @@ use protocol::{
 };
 use std::collections::BTreeMap;
 
+/// Number of bits of a comparison's number within one condition.
+const CONDITION_BITS: u32 = 17;
+
 /// Returns the number of the first of the two jobs (score and curves) of a compared individual; each
-/// condition has numbers for 256 individuals.
+/// condition has numbers for 65,536 individuals.
 pub(super) fn of_comparison(condition: usize, position: usize) -> u64 {
-    COMPARISONS + ((condition as u64) << 9) + 2 * position as u64
+    COMPARISONS + ((condition as u64) << CONDITION_BITS) + 2 * position as u64
 }
 
 /// Returns condition and position of the compared individual that a job scores or simulates; `None` for other jobs.
 pub(super) fn compared_individual(JobId(number): JobId) -> Option<(usize, usize)> {
     let place = number.checked_sub(COMPARISONS)?;
-    let position = usize::try_from((place % 512) / 2).ok()?;
-    (number < IDENTIFIABILITY).then_some((usize::try_from(place >> 9).ok()?, position))
+    let position = usize::try_from((place % (1 << CONDITION_BITS)) / 2).ok()?;
+    let condition = usize::try_from(place >> CONDITION_BITS).ok()?;
+    (number < IDENTIFIABILITY).then_some((condition, position))
 }
 
 /// Returns the number of the proposal that a job of a search evaluates; `None` for other jobs.

@@ -70,7 +70,7 @@ fn damages_of_a_mix_add_up_and_the_load_factor_gives_the_target() {
     // another question to the same run is answered from its journal
     let size = || fs::metadata(run.join("journal.hhj")).unwrap().len();
     let before = size();
-    let scaled = json(&[&hours[..], &["--factor", &factor]].concat());
+    let scaled = json(&[&hours[..], &["--stress-factor", &factor]].concat());
     let scaled = years(&scaled["gauges"][2]);
     assert!((scaled / 20.0 - 1.0).abs() < 1e-6, "{scaled}");
     // what a session enters is shorter than any result
@@ -148,7 +148,10 @@ fn options_that_cannot_be_meant_are_named_with_a_remedy() {
             vec!["--survival", "0.9", "--curve", "en-71"],
             vec!["scatter", "EN 1993-1-9 category 71"],
         ),
-        (vec!["--factor", "0"], vec!["--factor", "positive"]),
+        (
+            vec!["--stress-factor", "0"],
+            vec!["--stress-factor", "positive"],
+        ),
         (vec!["--target-years", "nan"], vec!["--target-years"]),
     ] {
         let output = Command::new(env!("CARGO_BIN_EXE_horsehead"))

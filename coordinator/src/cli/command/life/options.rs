@@ -50,9 +50,9 @@ pub(super) struct LifeOptions {
         long,
         value_name = "F",
         default_value_t = 1.0,
-        env = "HORSEHEAD_FACTOR"
+        env = "HORSEHEAD_STRESS_FACTOR"
     )]
-    factor: f64,
+    stress_factor: f64,
     /// Life for which the load factor is given \[years\].
     #[arg(
         long,
@@ -114,7 +114,7 @@ impl LifeOptions {
     /// Checks the options against a case and its machine.
     pub(super) fn plan(&self, case: &Case, machine: &Machine) -> anyhow::Result<LifePlan> {
         let positive = [
-            ("--factor", self.factor),
+            ("--stress-factor", self.stress_factor),
             ("--target-years", self.target_years),
             ("--yield", self.r#yield),
             ("--strength", self.strength.unwrap_or(1.0)),
@@ -137,7 +137,7 @@ impl LifeOptions {
             assessment: Assessment {
                 curve: self.curve()?,
                 mean_stress: self.mean_stress()?,
-                factor: self.factor,
+                factor: self.stress_factor,
             },
             criterion: match self.stress {
                 StressChoice::Normal => Criterion::NormalStress,

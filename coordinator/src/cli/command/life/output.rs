@@ -242,7 +242,7 @@ pub(super) fn tables(plan: &LifePlan, assessed: &[AssessedVariant]) -> Vec<Table
         return tables;
     };
     let head = [
-        "",
+        "hot spot",
         "near",
         "angle deg",
         "from the hole mm",
@@ -263,13 +263,13 @@ pub(super) fn tables(plan: &LifePlan, assessed: &[AssessedVariant]) -> Vec<Table
         own.load_factor
             .map_or_else(String::new, |x| format!("{x:.2}"))
     };
-    let spots = (1..).zip(&last.hot_spots).map(|(number, own)| {
+    let spots = (1_usize..).zip(&last.hot_spots).map(|(number, own)| {
         let millimetres = |x: f64| format!("{:.0}", 1e3 * x);
         let of_pin = |text: &dyn Fn(&super::place::Bearing) -> String| {
             own.bearing.as_ref().map_or_else(String::new, text)
         };
         Row::new(
-            format!("hot spot {number}"),
+            number.to_string(),
             [
                 of_pin(&|own| format!("pin {}", own.pin)),
                 of_pin(&|own| format!("{:.0}", own.angle_deg)),
