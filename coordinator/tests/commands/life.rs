@@ -106,7 +106,7 @@ fn a_run_compares_before_and_after() {
     // the report of the run shows it from now on
     json(&["report", run]);
     let page = fs::read_to_string(scratch.path().join("run/report.html")).unwrap();
-    assert!(page.contains("id=\"life\"") && page.contains("hot spot 1"));
+    assert!(page.contains("id=\"life\"") && page.contains("from the hole"));
     let (own, named) = (years(&own["hot_spots"][0]), years(&named["hot_spots"][0]));
     assert!((own / named - 1.0).abs() < 0.01, "{own} {named}");
 }
