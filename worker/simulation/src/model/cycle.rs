@@ -4,7 +4,8 @@
 //! Effects use these curves where they are defined by a reference motion or by the tension that the load
 //! alone causes: `T = (F A + J theta'' + M_g cos theta) / h`, with load `F`, front arm `A`, beam inertia `J`,
 //! beam angle `theta`, gravity moment `M_g` and back arm `h`. The net crank torque is `T h dtheta/dturn +
-//! M_cw cos(phi + tau)`, with counterweight moment `M_cw`, crank pin angle `phi` and phase `tau`.
+//! Q + M_cw cos(phi + tau)`, with the torque `Q` by which the crank lifts and accelerates connecting rods and
+//! crossbeam, counterweight moment `M_cw`, crank pin angle `phi` and phase `tau`.
 use crate::math::elementary::sin_cos;
 use crate::math::spline::{Splines, ValueAndDerivatives};
 use crate::model::description::{Crank, Description};
@@ -19,6 +20,8 @@ const NODES: usize = 360;
 pub struct Cycle {
     curves: Splines,
     tension: Splines,
+    /// Torque by which the crank lifts and accelerates connecting rods and crossbeam [N m].
+    rod: Splines,
     /// Crank pin angle at turn angle 0 \[rad\].
     bottom: f64,
     /// Parameters of the crank, used for computing its net torque.
@@ -43,6 +46,8 @@ impl Cycle {
     ) -> Result<Self, DoesNotClose> {
         let step = TAU / NODES as f64;
         let mut curves: [Vec<f64>; 3] = [const { Vec::new() }; 3];
+        // position and direction of rods and crossbeam, which continue the straight rope
+        let mut rod: [Vec<f64>; 3] = [const { Vec::new() }; 3];
         let mut at = *bottom;
         for k in 0..NODES {
             let pin = bottom.pin + d.crank.sense * step * k as f64;
@@ -50,7 +55,13 @@ impl Cycle {
             curves[BEAM].push(at.beam);
             curves[TANGENT].push(at.tangent);
             curves[ARM].push(at.arm);
+            let direction = at.beam + at.tangent;
+            let ([x, y], (s, c)) = (mechanism.pin(pin), sin_cos(direction));
+            rod[0].push(x + d.rod.center_of_mass * s);
+            rod[1].push(y - d.rod.center_of_mass * c);
+            rod[2].push(direction);
         }
+        let rod = Splines::periodic(0.0, step, &rod);
         let curves = Splines::periodic(0.0, step, &curves);
         let card = Splines::periodic(
             0.0,
@@ -72,7 +83,15 @@ impl Cycle {
                     / arm
             })
             .collect();
+        let of_rod = |k: usize| {
+            let place = rod.place(step * k as f64);
+            let [x, y, angle] = [0, 1, 2].map(|curve| rod.jet(&place, curve));
+            let (mass, inertia) = (d.rod.mass, d.rod.inertia);
+            let lifted = mass * (d.gravity + speed2 * y.second) * y.first;
+            lifted + speed2 * (mass * x.second * x.first + inertia * angle.second * angle.first)
+        };
         Ok(Self {
+            rod: Splines::periodic(0.0, step, &[(0..NODES).map(of_rod).collect()]),
             curves,
             tension: Splines::periodic(0.0, step, &[tension]),
             bottom: bottom.pin,
@@ -145,7 +164,7 @@ impl Cycle {
             * self.curves.jet(&place, BEAM).first;
         let sense = self.crank.sense;
         let angle = self.bottom + sense * (turn + phase);
-        rope + sense * moment * sin_cos(angle).1
+        rope + self.rod.value(turn, 0) + sense * moment * sin_cos(angle).1
     }
 
     /// Returns the parameters of the mechanism's crank.
