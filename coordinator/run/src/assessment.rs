@@ -70,7 +70,7 @@ enum Uncertainty {
     /// An estimate from the records of the case, at parameters that were fitted to them.
     Estimate(Box<Loaded>, Vec<f64>),
     /// The fit of a diagnosis, with the ratio of what it leaves to the noise.
-    Fitted(Option<Neighbourhood>, f64),
+    Fitted(Option<Neighbourhood>, Option<f64>),
 }
 
 /// Case, calibration or diagnosis that is assessed.
@@ -242,9 +242,7 @@ impl AssessmentTarget {
             own
         });
         let fit = diagnosis.after.as_ref();
-        let ratio = fit.map_or(f64::NAN, |fit| {
-            (fit.chi_squared / fit.entries as f64).sqrt()
-        });
+        let ratio = fit.map(|fit| (fit.chi_squared / fit.entries as f64).sqrt());
         Ok(Self {
             folder: run.manifest.case_folder.clone(),
             case,
@@ -320,18 +318,20 @@ impl AssessmentTarget {
                 let Some(found) = found else {
                     return Ok(Err(None));
                 };
-                found
+                (found.0, Some(found.1))
             }
             Uncertainty::Fitted(found, ratio) => (found.clone(), *ratio),
         };
         Ok(found.ok_or_else(|| {
-            Some(if ratio < NOISE_RATIO_LIMIT {
-                "the record does not determine all unknowns".to_owned()
-            } else {
-                format!(
+            Some(match ratio {
+                None => "the diagnosis ended before it came to an answer".to_owned(),
+                Some(ratio) if ratio < NOISE_RATIO_LIMIT => {
+                    "the record does not determine all unknowns".to_owned()
+                }
+                Some(ratio) => format!(
                     "the fit leaves {ratio:.1} times the noise, so that its numbers are not those of the machine; \
                      `horsehead diagnose` finds what the model lacks"
-                )
+                ),
             })
         }))
     }

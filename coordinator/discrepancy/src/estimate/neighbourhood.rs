@@ -21,7 +21,8 @@ use serde::{Deserialize, Serialize};
 const DRAWN: usize = 20;
 
 /// Standard deviation of a direction of the covariance, in coordinates of the fit, from which a draw along it is shortened
-/// where the record excludes it: half a decade, or a quarter of the interval of an unknown on a linear scale.
+/// where the record excludes it: half a decade, a quarter of the interval of an unknown on a linear scale, or half of the
+/// tolerance of an instrument.
 const UNDETERMINED: f64 = 0.5;
 /// Shares of the whole length that are tried one after the other.
 const SHARES: [f64; 6] = [1.0, 0.5, 0.25, 0.125, 0.0625, 0.0];
@@ -34,7 +35,8 @@ const RISE: f64 = 1.5;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Neighbourhood {
     /// Individuals below and above along the first parameter, then the second, and so on, then those drawn; 2 n + 20
-    /// for n parameters: the searched unknowns, then those of each effect that the fit adds to the case.
+    /// for n parameters: the searched unknowns, then those of each effect that the fit adds to the case. None are drawn
+    /// where the budget of the stage is used up.
     pub individuals: Vec<Individual>,
     /// Distance between the two individuals of each pair, in coordinates of the fit; length n.
     distances: Vec<f64>,
@@ -101,7 +103,11 @@ impl Neighbourhood {
             distances.push(pair[1].x[k] - pair[0].x[k]);
             individuals.extend(pair.map(|point| point.machine(0)));
         }
-        let drawn = draw(experiments, fit, (whole, spread.dispersion)).await?;
+        let drawn = if experiments.lab.has_budget(experiments.stage) {
+            draw(experiments, fit, (whole, spread.dispersion)).await?
+        } else {
+            Vec::new()
+        };
         individuals.extend(drawn.iter().map(|point| point.machine(0)));
         Ok(Some(Self {
             individuals,

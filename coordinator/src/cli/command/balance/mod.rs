@@ -205,13 +205,13 @@ fn assess(
             let best = plan.goal.best(&all, bounds);
             Ok(AssessedCrank::new(&machine.name, states, best))
         };
+    // a step would hide how the best moment changes
+    let anywhere = Bounds {
+        step_n_m: None,
+        ..plan.bounds.clone()
+    };
     let about = match &simulated.about {
         Some((neighbourhood, machines)) => {
-            // a step would hide how the best moment changes
-            let anywhere = Bounds {
-                step_n_m: None,
-                ..plan.bounds.clone()
-            };
             let machines = machines.iter().map(|own| of_machine(own, &anywhere));
             Some((neighbourhood, machines.collect::<anyhow::Result<Vec<_>>>()?))
         }
@@ -223,7 +223,8 @@ fn assess(
         let crank = of_machine(machine, &plan.bounds)?;
         Ok(match &about {
             Some((neighbourhood, about)) if k == last => {
-                crank.with_intervals(neighbourhood, about, &plan.bounds)
+                let between_steps = of_machine(machine, &anywhere)?.best.moment_n_m;
+                crank.with_intervals(neighbourhood, (about, between_steps), &plan.bounds)
             }
             _ => crank,
         })

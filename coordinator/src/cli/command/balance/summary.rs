@@ -76,15 +76,18 @@ impl AssessedCrank {
         }
     }
 
-    /// Returns the crank with intervals from the states and the best counterweights of the machines about it.
+    /// Returns the crank with intervals from the states and the best counterweights of the machines about it; the best
+    /// moment of this machine and of those about it is not rounded to a step of the weights [N m].
     pub(super) fn with_intervals(
         self,
         neighbourhood: &Neighbourhood,
-        about: &[Self],
+        (about, between_steps_n_m): (&[Self], f64),
         bounds: &Bounds,
     ) -> Self {
         // at a bound the best moment does not follow the unknowns
-        let inside = about.iter().all(|own| !bounds.ends_at(own.best.moment_n_m));
+        let mut along = about.iter().take(neighbourhood.along_parameters());
+        let inside = along.all(|own| !bounds.ends_at(own.best.moment_n_m));
+        let moments: Vec<f64> = about.iter().map(|own| own.best.moment_n_m).collect();
         let interval = |of: &dyn Fn(&Self) -> f64| {
             neighbourhood.interval(of(&self), &about.iter().map(of).collect::<Vec<_>>())
         };
@@ -98,7 +101,9 @@ impl AssessedCrank {
         Self {
             intervals: Some(Intervals {
                 states: states.collect(),
-                moment_n_m: interval(&|own| own.best.moment_n_m).filter(|_| inside),
+                moment_n_m: neighbourhood
+                    .interval(between_steps_n_m, &moments)
+                    .filter(|_| inside),
             }),
             ..self
         }

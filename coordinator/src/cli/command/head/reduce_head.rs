@@ -22,7 +22,16 @@ pub(in crate::cli::command) async fn reduce_head(
     stop: &mut Stop,
 ) -> Result<ReducedHead, StudyError> {
     let mut reduced = reductions(evaluator, (0, vec![spec.clone()]), stop).await?;
-    reduced.pop().ok_or_else(|| damaged("there is no answer"))
+    let reduced = reduced.pop().ok_or_else(|| damaged("there is no answer"))?;
+    let whole = match &reduced.surface {
+        Some(surface) => is_whole(surface),
+        None => spec.surface.is_none(),
+    };
+    if whole {
+        Ok(reduced)
+    } else {
+        Err(damaged("the surface is missing or not whole"))
+    }
 }
 
 /// Requests the stress on the surface of a head under unit loads, by the indices of [`SurfaceRequest::returned`], in as
@@ -55,10 +64,29 @@ pub(in crate::cli::command) async fn surface_stress(
             ..spec.clone()
         }
     };
-    let parts = loads.chunks(at_once).map(part).collect();
+    let parts: Vec<ReduceHeadSpec> = loads.chunks(at_once).map(part).collect();
     let reduced = reductions(evaluator, (1, parts), stop).await?;
-    let surfaces = reduced.into_iter().filter_map(|own| own.surface);
-    Ok(surfaces.flat_map(|own| own.stress_mpa).collect())
+    let points = surface.held.len();
+    let mut stress = Vec::with_capacity(loads.len());
+    for (own, part) in reduced.into_iter().zip(loads.chunks(at_once)) {
+        let of_part = own.surface.unwrap_or_default().stress_mpa;
+        if of_part.len() != part.len() || of_part.iter().any(|own| own.len() != points) {
+            return Err(damaged(
+                "the stress is not that of the requested loads and points",
+            ));
+        }
+        stress.extend(of_part);
+    }
+    Ok(stress)
+}
+
+/// Returns whether all arrays of a surface speak of the same points.
+fn is_whole(surface: &HeadSurface) -> bool {
+    let points = surface.held.len();
+    let mut corners = surface.faces.iter().flatten();
+    surface.places_m.len() == points
+        && surface.normals.len() == points
+        && corners.all(|&corner| (corner as usize) < points)
 }
 
 /// Returns the number of loads whose stress fits into one message beside the surface; `None` if none does.
