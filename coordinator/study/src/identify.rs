@@ -64,14 +64,7 @@ pub async fn estimate_at_start_on<E: Evaluator>(
     watch: &mut dyn Watch<StageView>,
     stop: &mut Stop,
 ) -> Result<Option<LinearEstimate>, StudyError> {
-    let mut jobs = Jobs::new(
-        (evaluator, IDENTIFIABILITY),
-        inputs,
-        &[Stage::Show],
-        watch,
-        stop,
-    );
-    linear_estimate(&mut jobs, inputs).await
+    linear_estimate(&mut jobs_at_start(evaluator, inputs, watch, stop), inputs).await
 }
 
 /// Collects individuals about the start values, by which any quantity of the machine has an interval, as
@@ -85,12 +78,16 @@ pub async fn neighbourhood_at_start_on<E: Evaluator>(
     watch: &mut dyn Watch<StageView>,
     stop: &mut Stop,
 ) -> Result<Option<(Option<Neighbourhood>, f64)>, StudyError> {
-    let mut jobs = Jobs::new(
-        (evaluator, IDENTIFIABILITY),
-        inputs,
-        &[Stage::Show],
-        watch,
-        stop,
-    );
-    neighbourhood_at_start(&mut jobs, inputs).await
+    neighbourhood_at_start(&mut jobs_at_start(evaluator, inputs, watch, stop), inputs).await
+}
+
+/// Returns the jobs of an estimate at the start values.
+fn jobs_at_start<'a, E: Evaluator>(
+    evaluator: &'a mut E,
+    inputs: &Inputs,
+    watch: &'a mut dyn Watch<StageView>,
+    stop: &'a mut Stop,
+) -> Jobs<'a, E> {
+    let from = (evaluator, IDENTIFIABILITY);
+    Jobs::new(from, inputs, &[Stage::Show], watch, stop)
 }

@@ -62,6 +62,12 @@ pub(super) fn nearest(pins: &[Pin], place_m: &[f64; 3]) -> Option<Bearing> {
     all.min_by(|a, b| a.distance_m.total_cmp(&b.distance_m))
 }
 
+/// Returns the distance of two points, in their unit.
+pub(super) fn distance(a: &[f64; 3], b: &[f64; 3]) -> f64 {
+    let square = a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>();
+    square.sqrt()
+}
+
 /// Returns whether a surface has an inner edge at a point: another face there rises above its plane, so that the material
 /// fills more than half of the space around. Without a fillet the stress at such an edge has no limit as a mesh is refined.
 pub(super) fn is_at_inner_edge(surface: &HeadSurface, point: usize) -> bool {
@@ -70,9 +76,9 @@ pub(super) fn is_at_inner_edge(surface: &HeadSurface, point: usize) -> bool {
         let to = surface.places_m[from];
         [0, 1, 2].map(|axis| to[axis] - place[axis])
     };
-    let length = |v: &[f64; 3]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
     let corners = |face: &[u32; 4]| face.map(|corner| corner as usize);
-    let meets = |corner: usize| corner != point && length(&offset(corner)) <= 0.0;
+    let meets =
+        |corner: usize| corner != point && distance(&surface.places_m[corner], &place) <= 0.0;
     surface.faces.iter().map(corners).any(|corners| {
         if !corners.into_iter().any(meets) {
             return false;
@@ -80,7 +86,7 @@ pub(super) fn is_at_inner_edge(surface: &HeadSurface, point: usize) -> bool {
         let across = corners.map(offset);
         let center = [0, 1, 2].map(|axis| across.iter().map(|own| own[axis]).sum::<f64>());
         let above = center.iter().zip(normal).map(|(x, n)| x * f64::from(n));
-        above.sum::<f64>() > RISE * length(&center)
+        above.sum::<f64>() > RISE * distance(&center, &[0.0; 3])
     })
 }
 

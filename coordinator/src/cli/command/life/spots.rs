@@ -2,7 +2,7 @@
 use super::{
     body::Body,
     options::LifePlan,
-    place::{Bearing, is_at_inner_edge, nearest},
+    place::{Bearing, distance, is_at_inner_edge, nearest},
 };
 use discrepancy::estimate::neighbourhood::{Neighbourhood, QuantityInterval};
 use fatigue::{Assessment, LoadPeriod, PointDamage, Residue, StressCycle, cycles};
@@ -273,11 +273,6 @@ fn sectors(assessment: &Assessment, cycles: &[StressCycle], step_deg: f64) -> Ve
         }
     }
     sums
-}
-
-fn distance(a: &[f64; 3], b: &[f64; 3]) -> f64 {
-    let square = a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>();
-    square.sqrt()
 }
 
 /// Returns the damage of one revolution by its cycles, with all stresses times a factor.
