@@ -13,7 +13,8 @@ use crate::{
 };
 use case::{DiagnoseEntry, Loaded, Overrides, load_with_notes};
 use discrepancy::{
-    diagnose::Estimate, estimate::neighbourhood::Neighbourhood, thresholds::NOISE_RATIO_LIMIT,
+    diagnose::Estimate,
+    estimate::neighbourhood::{Neighbourhood, NoNeighbourhood},
 };
 use protocol::{
     case::{Case, EffectSetting},
@@ -69,8 +70,8 @@ enum Uncertainty {
     Unknown,
     /// An estimate from the records of the case, at parameters that were fitted to them.
     Estimate(Box<Loaded>, Vec<f64>),
-    /// The fit of a diagnosis, with the ratio of what it leaves to the noise.
-    Fitted(Option<Neighbourhood>, Option<f64>),
+    /// The answer of a diagnosis; `None` where it came to none.
+    Answer(Option<Result<Neighbourhood, NoNeighbourhood>>),
 }
 
 /// Case, calibration or diagnosis that is assessed.
@@ -236,13 +237,11 @@ impl AssessmentTarget {
         compared.extend(with_and_without(&case, "diagnosed", &start.genes));
         // individuals of the fit state what was added as effects; genes of the case have it as unknowns
         let neighbourhood = diagnosis.neighbourhood.map(|mut own| {
-            for individual in &mut own.individuals {
+            for individual in own.iter_mut().flat_map(|own| &mut own.individuals) {
                 individual.genes = with_found(&individual.genes);
             }
             own
         });
-        let fit = diagnosis.after.as_ref();
-        let ratio = fit.map(|fit| (fit.chi_squared / fit.entries as f64).sqrt());
         Ok(Self {
             folder: run.manifest.case_folder.clone(),
             case,
@@ -252,7 +251,7 @@ impl AssessmentTarget {
                 others: Vec::new(),
             },
             run: Some(target.to_owned()),
-            uncertainty: Uncertainty::Fitted(neighbourhood, ratio),
+            uncertainty: Uncertainty::Answer(neighbourhood),
             measured: run.manifest.replaced_records().map(ToOwned::to_owned),
             notes: run.manifest.notes.clone(),
             synthetic: run.manifest.synthetic,
@@ -308,27 +307,28 @@ impl AssessmentTarget {
         watch: &mut dyn Watch<StageView>,
         stop: &mut Stop,
     ) -> anyhow::Result<Result<Neighbourhood, Option<String>>> {
-        let (found, ratio) = match &self.uncertainty {
+        let found = match &self.uncertainty {
             Uncertainty::Unknown => return Ok(Err(None)),
             Uncertainty::Estimate(loaded, genes) => {
                 let manifest = self.manifest(LifeSettings(self.machines.clone()))?;
                 let inputs = inputs_at(loaded, &manifest, genes)?;
-                let found =
-                    study::neighbourhood_at_start_on(evaluator, &inputs, watch, stop).await?;
-                let Some(found) = found else {
-                    return Ok(Err(None));
-                };
-                (found.0, Some(found.1))
+                match study::neighbourhood_at_start_on(evaluator, &inputs, watch, stop).await? {
+                    Some(found) => found,
+                    None => return Ok(Err(None)),
+                }
             }
-            Uncertainty::Fitted(found, ratio) => (found.clone(), *ratio),
+            Uncertainty::Answer(Some(found)) => found.clone(),
+            Uncertainty::Answer(None) => {
+                let reason = "the diagnosis ended before it came to an answer";
+                return Ok(Err(Some(reason.to_owned())));
+            }
         };
-        Ok(found.ok_or_else(|| {
-            Some(match ratio {
-                None => "the diagnosis ended before it came to an answer".to_owned(),
-                Some(ratio) if ratio < NOISE_RATIO_LIMIT => {
+        Ok(found.map_err(|reason| {
+            Some(match reason {
+                NoNeighbourhood::Undetermined => {
                     "the record does not determine all unknowns".to_owned()
                 }
-                Some(ratio) => format!(
+                NoNeighbourhood::Misfit(ratio) => format!(
                     "the fit leaves {ratio:.1} times the noise, so that its numbers are not those of the machine; \
                      `horsehead diagnose` finds what the model lacks"
                 ),

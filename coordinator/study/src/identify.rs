@@ -9,7 +9,7 @@ use super::{
     watch::Watch,
 };
 use discrepancy::diagnose::Inputs;
-use discrepancy::estimate::neighbourhood::Neighbourhood;
+use discrepancy::estimate::neighbourhood::{Neighbourhood, NoNeighbourhood};
 use discrepancy::identify::{LinearEstimate, identify, linear_estimate, neighbourhood_at_start};
 use discrepancy::laboratory::Stage;
 use journal::job_range::{EXPERIMENTS, IDENTIFIABILITY};
@@ -77,7 +77,7 @@ pub async fn neighbourhood_at_start_on<E: Evaluator>(
     inputs: &Inputs,
     watch: &mut dyn Watch<StageView>,
     stop: &mut Stop,
-) -> Result<Option<(Option<Neighbourhood>, f64)>, StudyError> {
+) -> Result<Option<Result<Neighbourhood, NoNeighbourhood>>, StudyError> {
     neighbourhood_at_start(&mut jobs_at_start(evaluator, inputs, watch, stop), inputs).await
 }
 

@@ -104,7 +104,8 @@ pub(crate) async fn conclude<L: Laboratory>(
     }
     diagnosis.nuisances = nuisance_estimates(&after, &spread);
     let mut experiments = session.experiments(Stage::Show);
-    diagnosis.neighbourhood = Neighbourhood::around(&mut experiments, &after, &spread).await?;
+    let found = Neighbourhood::around(&mut experiments, &after, &spread).await?;
+    diagnosis.neighbourhood = Some(found);
     // what a missing effect leaves is no noise: limits are those beside the answer
     let ratio = (after.misfit() / base.fit.misfit()).sqrt();
     for limit in &mut diagnosis.limits {

@@ -6,7 +6,7 @@ use crate::estimate::effect_size::Estimate;
 use crate::estimate::experiment_design::IndistinguishablePair;
 use crate::estimate::force::ForceEstimate;
 use crate::estimate::limit::Limit;
-use crate::estimate::neighbourhood::Neighbourhood;
+use crate::estimate::neighbourhood::{Neighbourhood, NoNeighbourhood};
 use crate::estimate::nuisances::NuisanceEstimate;
 use crate::hypothesis::refit::Refitted;
 use crate::hypothesis::round::{Round, WorkingRound};
@@ -60,8 +60,9 @@ pub struct Diagnosis<F = FitSummary, S = f64> {
     pub before: Option<F>,
     /// Fit of the model with the effects of the answer.
     pub after: Option<F>,
-    /// Individuals about the answer, by which any quantity of the machine has an interval; `None` where it has none.
-    pub neighbourhood: Option<Neighbourhood>,
+    /// Individuals about the answer, by which any quantity of the machine has an interval; `None` where the diagnosis
+    /// ended before it came to an answer.
+    pub neighbourhood: Option<Result<Neighbourhood, NoNeighbourhood>>,
     /// p-value of the whiteness test of the residual: of the recalibrated model, and of the answer.
     pub whiteness: Option<[f64; 2]>,
     /// Shifts of single parameters when the recalibrated model is refitted on parts of the abscissa and under

@@ -46,6 +46,16 @@ pub struct Neighbourhood {
     quantile: f64,
 }
 
+/// Reason why quantities have no intervals about a fit.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum NoNeighbourhood {
+    /// The record does not determine all parameters to first order.
+    Undetermined,
+    /// The fit leaves so much more than noise, and no smooth discrepancy stands for it, that its numbers are not those of
+    /// the machine: the ratio of its residual to the noise.
+    Misfit(f64),
+}
+
 /// 95 % interval of a quantity to first order, checked by drawn individuals.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct QuantityInterval {
@@ -71,9 +81,8 @@ impl QuantityInterval {
 }
 
 impl Neighbourhood {
-    /// Collects the individuals about a fit; `None` where the record does not determine all its parameters to first
-    /// order, or where the fit leaves so much more than noise, and no smooth discrepancy stands for it, that its numbers
-    /// are not those of the machine. Simulates the draws that it may have to shorten.
+    /// Collects the individuals about a fit, or returns the reason why it has none. Simulates the draws that it may have
+    /// to shorten.
     ///
     /// # Errors
     /// Those of the laboratory.
@@ -81,14 +90,15 @@ impl Neighbourhood {
         experiments: &mut Experiments<'_, L>,
         fit: &Fit,
         spread: &Spread,
-    ) -> Result<Option<Self>, L::Error> {
-        let Some(whole) = &spread.covariance else {
-            return Ok(None);
-        };
-        let is_noise = spread.dispersion.sqrt() < NOISE_RATIO_LIMIT;
-        if !is_noise || whole.iter().any(|entry| !entry.is_finite()) {
-            return Ok(None);
+    ) -> Result<Result<Self, NoNeighbourhood>, L::Error> {
+        let ratio = spread.dispersion.sqrt();
+        if ratio >= NOISE_RATIO_LIMIT {
+            return Ok(Err(NoNeighbourhood::Misfit(ratio)));
         }
+        let is_finite = |own: &&DMatrix<f64>| own.iter().all(|entry| entry.is_finite());
+        let Some(whole) = spread.covariance.as_ref().filter(is_finite) else {
+            return Ok(Err(NoNeighbourhood::Undetermined));
+        };
         let of_instruments: Vec<usize> = fit.model.indexed_nuisances().map(|(k, _)| k).collect();
         let parameters = (0..fit.x().len()).filter(|k| !of_instruments.contains(k));
         let parameters: Vec<usize> = parameters.collect();
@@ -109,7 +119,7 @@ impl Neighbourhood {
             Vec::new()
         };
         individuals.extend(drawn.iter().map(|point| point.machine(0)));
-        Ok(Some(Self {
+        Ok(Ok(Self {
             individuals,
             distances,
             covariance: whole.select_rows(&parameters).select_columns(&parameters),

@@ -5,7 +5,7 @@
 //! [`super::identify`] computes profile likelihoods instead.
 use super::answer::{Determination, IntervalEnd, UnknownEstimate};
 use super::settings::FREE;
-use crate::estimate::neighbourhood::Neighbourhood;
+use crate::estimate::neighbourhood::{Neighbourhood, NoNeighbourhood};
 use crate::estimate::spread::Spread;
 use crate::inputs::Inputs;
 use crate::laboratory::{Laboratory, Stage};
@@ -86,16 +86,15 @@ pub async fn linear_estimate<L: Laboratory>(
     }))
 }
 
-/// Collects individuals about the start point that the inputs state, from the record of the calibrated condition, with
-/// the misfit there in units of the noise, as a ratio of amplitudes that is at least 1. Returns `None` as
-/// [`linear_estimate`]; the individuals are `None` where a quantity has no interval.
+/// Collects individuals about the start point that the inputs state, from the record of the calibrated condition. Returns
+/// `None` as [`linear_estimate`].
 ///
 /// # Errors
 /// As [`linear_estimate`].
 pub async fn neighbourhood_at_start<L: Laboratory>(
     lab: &mut L,
     inputs: &Inputs,
-) -> Result<Option<(Option<Neighbourhood>, f64)>, L::Error> {
+) -> Result<Option<Result<Neighbourhood, NoNeighbourhood>>, L::Error> {
     let Some((on, fit)) = linearized_at_start(lab, inputs).await? else {
         return Ok(None);
     };
@@ -106,7 +105,7 @@ pub async fn neighbourhood_at_start<L: Laboratory>(
         stage: Stage::Show,
     };
     let found = Neighbourhood::around(&mut experiments, &fit, &spread).await?;
-    Ok(Some((found, spread.dispersion.max(1.0).sqrt())))
+    Ok(Some(found))
 }
 
 /// Returns the record of the calibrated condition under its own noise, and the model with its derivatives at the start

@@ -70,7 +70,7 @@ pub(in crate::cli::command) async fn surface_stress(
     let mut stress = Vec::with_capacity(loads.len());
     for (own, part) in reduced.into_iter().zip(loads.chunks(at_once)) {
         let of_part = own.surface.unwrap_or_default().stress_mpa;
-        if of_part.len() != part.len() || of_part.iter().any(|own| own.len() != points) {
+        if !is_stress_of(&of_part, part.len(), points) {
             return Err(damaged(
                 "the stress is not that of the requested loads and points",
             ));
@@ -87,6 +87,11 @@ fn is_whole(surface: &HeadSurface) -> bool {
     surface.places_m.len() == points
         && surface.normals.len() == points
         && corners.all(|&corner| (corner as usize) < points)
+}
+
+/// Returns whether a stress is that of a number of loads at a number of points.
+fn is_stress_of(stress: &[Vec<[f32; 6]>], loads: usize, points: usize) -> bool {
+    stress.len() == loads && stress.iter().all(|own| own.len() == points)
 }
 
 /// Returns the number of loads whose stress fits into one message beside the surface; `None` if none does.
@@ -137,6 +142,34 @@ fn damaged(problem: &str) -> StudyError {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Checks that a surface or a stress with one number too few or too many is not taken.
+    #[test]
+    fn incomplete_answers_are_found() {
+        let whole = HeadSurface {
+            places_m: vec![[0.1; 3]; 5],
+            normals: vec![[0.1; 3]; 5],
+            held: vec![false; 5],
+            faces: vec![[0, 1, 2, 3], [1, 2, 3, 4]],
+            stress_mpa: Vec::new(),
+        };
+        assert!(is_whole(&whole));
+        let breaks: [fn(&mut HeadSurface); 4] = [
+            |own| own.places_m.truncate(4),
+            |own| own.normals.push([0.1; 3]),
+            |own| own.held.truncate(4),
+            |own| own.faces[1][3] = 5,
+        ];
+        for change in breaks {
+            let mut broken = whole.clone();
+            change(&mut broken);
+            assert!(!is_whole(&broken), "{broken:?}");
+        }
+        let mut stress = vec![vec![[1.0; 6]; 5]; 3];
+        assert!(is_stress_of(&stress, 3, 5) && !is_stress_of(&stress, 2, 5));
+        stress[1].truncate(4);
+        assert!(!is_stress_of(&stress, 3, 5));
+    }
 
     /// Checks that the answer for as many loads as are asked for at once fits into one message, and that for one more
     /// would not.
