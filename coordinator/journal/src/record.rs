@@ -11,7 +11,7 @@ pub const LOCK: &str = "lock";
 
 /// Version of the journal: raised when the form of a record changes, which is that of an [`Event`] and of the study's
 /// entries. Journals up to version 15 had that of the wire protocol.
-pub const VERSION: u8 = 21;
+pub const VERSION: u8 = 22;
 
 /// Mark at the start of each journal record; the last byte is the format version, as a digit.
 pub const MARK: [u8; 4] = [b'H', b'H', b'J', b'0' + VERSION];

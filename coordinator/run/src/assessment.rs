@@ -3,7 +3,6 @@
 //! interval.
 use crate::{
     calibration::{self, CalibrationRun},
-    command_line::quote_path,
     diagnosis::{DiagnosisRun, inputs_at},
     folder::{GENES, RunFolder},
     hash::short_hash,
@@ -30,8 +29,6 @@ use support::Problem;
 /// Settings of an assessment: the machines that it simulates.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Machines {
-    /// Case or run that is assessed.
-    target: PathBuf,
     /// Machines that are compared; the last one is assessed in full.
     compared: Vec<NamedIndividual>,
     /// Fits of other families that a calibration saw, best first.
@@ -49,19 +46,11 @@ pub struct BalanceSettings(pub Machines);
 impl RunIdentity for LifeSettings {
     const KIND: &'static str = LIFE;
     const SEEDED: bool = false;
-
-    fn command(&self, _: &str) -> String {
-        format!("{LIFE} {}", quote_path(&self.0.target))
-    }
 }
 
 impl RunIdentity for BalanceSettings {
     const KIND: &'static str = BALANCE;
     const SEEDED: bool = false;
-
-    fn command(&self, _: &str) -> String {
-        format!("{BALANCE} {}", quote_path(&self.0.target))
-    }
 }
 
 /// Source of the individuals about the assessed machine.
@@ -83,6 +72,8 @@ pub struct AssessmentTarget {
     machines: Machines,
     /// Run that is assessed; `None` for a case.
     pub run: Option<PathBuf>,
+    /// Parameters that replace the recommended ones of a case.
+    start: Option<StartPoint>,
     uncertainty: Uncertainty,
     measured: Option<PathBuf>,
     /// Notes on the case and its records.
@@ -133,7 +124,6 @@ impl AssessmentTarget {
             folder: target.to_owned(),
             case: loaded.case.clone(),
             machines: Machines {
-                target: std::path::absolute(target)?,
                 compared: with_and_without(&loaded.case, &name, &values),
                 others: Vec::new(),
             },
@@ -145,6 +135,7 @@ impl AssessmentTarget {
             } else {
                 Uncertainty::Unknown
             },
+            start,
             measured: None,
         })
     }
@@ -170,7 +161,6 @@ impl AssessmentTarget {
         compared.extend(with_and_without(&run.case, "optimised", &best));
         Ok(Self {
             machines: Machines {
-                target: std::path::absolute(target)?,
                 compared,
                 others: others
                     .into_iter()
@@ -181,6 +171,7 @@ impl AssessmentTarget {
                 Uncertainty::Estimate(Box::new(loaded), best)
             }),
             run: Some(target.to_owned()),
+            start: None,
             folder: run.manifest.case_folder.clone(),
             measured: run.manifest.replaced_records().map(ToOwned::to_owned),
             notes,
@@ -246,11 +237,11 @@ impl AssessmentTarget {
             folder: run.manifest.case_folder.clone(),
             case,
             machines: Machines {
-                target: std::path::absolute(target)?,
                 compared,
                 others: Vec::new(),
             },
             run: Some(target.to_owned()),
+            start: None,
             uncertainty: Uncertainty::Answer(neighbourhood),
             measured: run.manifest.replaced_records().map(ToOwned::to_owned),
             notes: run.manifest.notes.clone(),
@@ -296,6 +287,8 @@ impl AssessmentTarget {
             measured: measured.display().to_string(),
             synthetic: self.synthetic,
             notes: self.notes.clone(),
+            assessed: self.run.as_ref().map(std::path::absolute).transpose()?,
+            start: self.start.clone(),
             ..Manifest::new(&self.folder, 0, settings)?
         })
     }
@@ -400,9 +393,7 @@ pub async fn simulate_machines<E: Evaluator>(
     watch: &mut dyn Watch<StageView>,
     stop: &mut Stop,
 ) -> anyhow::Result<SimulatedMachines> {
-    let Machines {
-        compared, others, ..
-    } = &target.machines;
+    let Machines { compared, others } = &target.machines;
     let mut individuals = compared.clone();
     let assessed = individuals.len().saturating_sub(1);
     let further = (1..).zip(others);

@@ -50,9 +50,9 @@ pub trait RunIdentity: Serialize + DeserializeOwned + PartialEq + Clone {
     const SEEDED: bool = true;
 
     /// Returns the command that creates runs of this kind, with its positional arguments, quoted for a shell;
-    /// `case` is the folder of the case.
-    fn command(&self, case: &str) -> String {
-        [Self::KIND, " ", case].concat()
+    /// `subject` is the folder of the case, or of the run that is assessed.
+    fn command(&self, subject: &str) -> String {
+        [Self::KIND, " ", subject].concat()
     }
 
     /// Returns the further command line options that resuming the run requires besides preset, settings and
@@ -112,6 +112,9 @@ pub struct Manifest<S = Settings> {
     /// Table of individuals that the search evaluates first; `None` if there is none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub table: Option<FirstTable>,
+    /// Run that is assessed, where it was when this run was last begun; `None` for a run of a case.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub assessed: Option<PathBuf>,
     /// Folder from which the case was read.
     pub case_folder: PathBuf,
     /// Folder from which the measured records were read.
@@ -308,6 +311,7 @@ impl<S: RunIdentity> Manifest<S> {
             settings,
             start: None,
             table: None,
+            assessed: None,
             case_folder: std::path::absolute(case_folder)?,
             measured: case_folder.display().to_string(),
             synthetic: false,
@@ -335,7 +339,8 @@ impl<S: RunIdentity> Manifest<S> {
 
     /// Returns the command that resumes the run in its present folder.
     pub fn resume_command(&self, folder: &Path) -> String {
-        let about = self.settings.command(&quote_path(&self.case_folder));
+        let subject = self.assessed.as_ref().unwrap_or(&self.case_folder);
+        let about = self.settings.command(&quote_path(subject));
         let mut command = format!("horsehead {about}");
         if !self.preset.is_empty() {
             command.extend([" --preset ", &quote(&self.preset)]);
@@ -351,7 +356,9 @@ impl<S: RunIdentity> Manifest<S> {
         if let Some(start) = &self.start {
             command.extend([" --genes ", &quote_path(&start.file)]);
         }
-        if let Some(records) = self.replaced_records() {
+        // those of an assessed run are its own
+        let records = self.replaced_records();
+        if let Some(records) = records.filter(|_| self.assessed.is_none()) {
             command.extend([" --measured ", &quote_path(records)]);
         }
         command

@@ -26,6 +26,7 @@ pub fn run_properties<S: Serialize>(
         settings,
         start,
         table,
+        assessed,
         case_folder,
         measured,
         synthetic,
@@ -52,6 +53,12 @@ pub fn run_properties<S: Serialize>(
         ("settings", serde_json::to_string(settings)?),
         ("start", start),
         ("individuals", table),
+        (
+            "assessed",
+            assessed
+                .as_ref()
+                .map_or_else(String::new, |run| run.display().to_string()),
+        ),
         ("case_folder", case_folder.display().to_string()),
         ("measured", measured.clone()),
         (

@@ -107,6 +107,14 @@ fn a_run_compares_before_and_after() {
     json(&["report", run]);
     let page = fs::read_to_string(scratch.path().join("run/report.html")).unwrap();
     assert!(page.contains("id=\"life\"") && page.contains("from the hole"));
+    // a run that was moved is not assessed again: its journal has the simulations
+    let moved = scratch.path().join("moved");
+    fs::rename(scratch.path().join("run"), &moved).unwrap();
+    let size = || fs::metadata(moved.join("life/journal.hhj")).unwrap().len();
+    let before = size();
+    let again = json(&["life", moved.to_str().unwrap()]);
+    assert_eq!(again["hot_spots"], named["hot_spots"]);
+    assert!(size() - before < 2000, "{before} {}", size());
     let (own, named) = (years(&own["hot_spots"][0]), years(&named["hot_spots"][0]));
     assert!((own / named - 1.0).abs() < 0.01, "{own} {named}");
 }

@@ -6,6 +6,11 @@ use protocol::{
     wire::WireError,
 };
 
+/// Number of times the iteration budget of the case that a simulation of a diagnosis has. A machine that is given up is a
+/// hole in the misfit, at whose edge a fit ends: with the budget of the case, 1,717 of 4,600 simulations of practice
+/// set 2 were given up, and the answer with them under the other condition; with four times as many, 134 of 3,721.
+const PATIENCE: u64 = 4;
+
 /// Returns the numerical settings for the simulations of a diagnosis, and those for its check of the
 /// discretisation error: everything refined, only the cylinders of the ropes refined, everything else
 /// refined.
@@ -21,6 +26,7 @@ pub(super) fn numerics(
     let available = machine.modal_head.frequencies_hz.len();
     let usual = Discretisation {
         longest_step_s: Some(step * machine.run.longest_step_s),
+        budget: Some(PATIENCE.saturating_mul(machine.run.iteration_budget)),
         ..Discretisation::default()
     };
     let finest = Discretisation {
@@ -28,7 +34,8 @@ pub(super) fn numerics(
         lead_in_deg: Some(machine.run.lead_in_deg + 180.0),
         modes: Some((machine.run.modes + 2).min(available)),
         longest_step_s: Some(0.5 * step * machine.run.longest_step_s),
-        ..Discretisation::OF_THE_CASE
+        budget: usual.budget.map(|own| own.saturating_mul(2)),
+        ..usual
     };
     let cylinders = Discretisation {
         cylinder_length_m: finest.cylinder_length_m,

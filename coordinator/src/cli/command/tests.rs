@@ -42,6 +42,7 @@ fn manifest(case: &Case, seed: u64) -> Manifest {
         }),
         start: None,
         table: None,
+        assessed: None,
         case_folder: shipped(),
         measured: "X".to_owned(),
         synthetic: false,

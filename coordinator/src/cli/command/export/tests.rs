@@ -112,6 +112,7 @@ fn run_with(folder: &Path, results: usize) -> (JournalingEvaluator, Option<Calib
         }),
         start: None,
         table: None,
+        assessed: None,
         case_folder: folder.to_owned(),
         measured: "X".to_owned(),
         synthetic: false,

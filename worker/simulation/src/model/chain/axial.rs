@@ -43,17 +43,21 @@ impl Chain {
     /// Adds the forces of the axial effect laws on the cylinders to `force`, without the joints' own forces.
     pub(crate) fn add_pulls(&self, joints: &Joints<'_>, state: &ChainState, force: &mut [f64]) {
         for joint in 1..self.count {
-            let Some(pull) = self.pull(joint, joints, state) else {
-                return;
-            };
             if self.in_plane(joint) {
                 let at = self.plane_geometry(joint, state);
+                let stretched = [at.deformation[0], at.rate[0]];
+                let Some(pull) = pull_at(joint, joints, state, stretched) else {
+                    return;
+                };
                 let load = at.load([pull.force, 0.0, 0.0]);
                 let rows = force[(self.first + joint - 1) * 3..].iter_mut();
                 for (force, own) in rows.zip(load.on_coordinates()) {
                     *force += own;
                 }
             } else if let Some(([i, j], law)) = self.link(joint, joints, state) {
+                let Some(pull) = pull_at(joint, joints, state, law.extension(&i, &j)) else {
+                    return;
+                };
                 let mut load = LinkLoad::none();
                 law.add_pull((&i, &j), &pull, &mut load);
                 self.add_load(joint, &load, state, force);
