@@ -20,8 +20,8 @@ mod value;
 
 pub use crate::model::cycle::Cycle;
 pub use crate::model::extension::{
-    Axial, Dashpot, Effect, Extensions, Force, Hollow, LineForce, LineForceValue, Memory, Reading,
-    SampleState, Site, Strain,
+    Axial, Dashpot, Effect, Extensions, Force, Hollow, LineForce, LineForceValue, Memory,
+    MemoryDerivatives, Reading, SampleState, Site, Strain,
 };
 pub use catalogue::catalogue;
 pub use descriptor::{Descriptor, Parameter, Place, Role};

@@ -10,7 +10,7 @@ use crate::model::chain::parts::Joints;
 use crate::model::chain::state::ChainState;
 use crate::model::chain::unit_loads::UnitLoads;
 use crate::model::contact::{Deflection, Surface};
-use crate::model::extension::Extensions;
+use crate::model::extension::{Extensions, MemoryDerivatives};
 use crate::model::force_buffers::ForceBuffers;
 use crate::model::machine::Machine;
 use crate::model::machine_state::MachineState;
@@ -306,6 +306,20 @@ impl Machine {
     ) {
         for (k, units) in units.iter_mut().enumerate() {
             units.fill(&self.chains[k], &self.joints(k, at), &scratch.chains[k]);
+        }
+    }
+
+    /// Computes the derivatives that concern the memory of the axial laws, one list per chain, from the loads of the
+    /// joints per unit of each coefficient; see [`Chain::memory_derivatives`].
+    pub(super) fn memory_derivatives(
+        &self,
+        at: &MachineState<'_>,
+        (scratch, units): (&ForceBuffers, &[UnitLoads]),
+        out: &mut [Vec<MemoryDerivatives>],
+    ) {
+        for (k, (units, out)) in units.iter().zip(out).enumerate() {
+            let state = (&scratch.chains[k], units);
+            self.chains[k].memory_derivatives(&self.joints(k, at), state, out);
         }
     }
 

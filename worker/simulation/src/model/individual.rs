@@ -4,7 +4,7 @@ use crate::element::impact::DerivativeVariable;
 use crate::linear::{Bordered, MatrixEntry};
 use crate::math::elementary::sin_cos;
 use crate::model::chain::unit_loads::UnitLoads;
-use crate::model::extension::Extensions;
+use crate::model::extension::{Extensions, MemoryDerivatives};
 use crate::model::force_buffers::ForceBuffers;
 use crate::model::forces::Terms;
 use crate::model::machine::Machine;
@@ -204,6 +204,20 @@ impl<'a> RopeMachine<'a> {
         self.move_to(at.t);
         let instant = instant(&self.ropes, &self.at.1, at);
         self.machine.unit_loads(&instant, &self.scratch, units);
+    }
+
+    /// Computes the derivatives that concern the memory of the axial laws, one list per chain, at the poses and the
+    /// memory of the last evaluation, for which `units` were computed.
+    pub(crate) fn memory_derivatives(
+        &mut self,
+        at: StateRef<'_>,
+        units: &[UnitLoads],
+        out: &mut [Vec<MemoryDerivatives>],
+    ) {
+        self.move_to(at.t);
+        let instant = instant(&self.ropes, &self.at.1, at);
+        self.machine
+            .memory_derivatives(&instant, (&self.scratch, units), out);
     }
 
     /// Adds `factor` times the generalised forces of all rope joints under unit coefficients; see

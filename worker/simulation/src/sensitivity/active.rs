@@ -96,6 +96,9 @@ pub(super) struct Active<'a> {
     /// empty if the column needs none.
     pub(super) perturbed: Vec<PerturbedModel<'a>>,
     pub(super) difference: Difference,
+    /// Whether the memory of axial laws is differentiated with the state, at the same laws in the same joints. Otherwise
+    /// each perturbed machine has a memory of its own, which follows the perturbed state.
+    pub(super) memory_by_state: bool,
     /// Whether the gauge readings depend on the parameter explicitly, at a fixed state.
     explicit: bool,
     pub(super) curves: DerivativeCurves,
@@ -112,6 +115,12 @@ impl<'a> Active<'a> {
             PerturbedModel::new(machine, machine.ropes(law), settings.drive(machine))
         };
         let curves = DerivativeCurves::default();
+        let memory_by_state = |beside: &Machine| {
+            let [own, beside] = [machine, beside].map(|own| own.extensions.axial_laws());
+            machine.layout.motion == Motion::Plane
+                && machine.extensions.has_axial()
+                && own == beside
+        };
         match way {
             ColumnMethod::Coefficient(coefficient) => {
                 let difference = Difference::decades(machine.extensions.has_axial());
@@ -122,6 +131,7 @@ impl<'a> Active<'a> {
                     source,
                     perturbed: difference.steps.map(moved).to_vec(),
                     difference,
+                    memory_by_state: memory_by_state(machine),
                     explicit: true,
                     curves,
                 })
@@ -147,6 +157,7 @@ impl<'a> Active<'a> {
                     source,
                     perturbed: sides.collect(),
                     difference: *difference,
+                    memory_by_state: machines.iter().all(memory_by_state),
                     explicit: differing.reading || read,
                     curves,
                 })
@@ -156,6 +167,7 @@ impl<'a> Active<'a> {
                 source: Source::Pieces(extensions),
                 perturbed: Vec::new(),
                 difference: Difference::decades(false),
+                memory_by_state: false,
                 explicit: false,
                 curves,
             }),
@@ -263,5 +275,10 @@ impl<'a> Active<'a> {
 
     pub(super) const fn moves(&self) -> bool {
         !matches!(self.source, Source::Nothing)
+    }
+
+    /// Returns whether axial laws may depend on the parameter, at a fixed state and memory.
+    pub(super) const fn changes_laws(&self) -> bool {
+        matches!(self.source, Source::Difference(terms, ..) if terms.pulls || terms.joints)
     }
 }

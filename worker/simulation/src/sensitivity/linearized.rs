@@ -3,6 +3,7 @@ use crate::integrator::stepper::Stages;
 use crate::linear::{Bordered, SingularPivot};
 use crate::math::vector::add_scaled;
 use crate::model::chain::unit_loads::UnitLoads;
+use crate::model::extension::MemoryDerivatives;
 use crate::model::{ForceBuffers, RopeMachine};
 use crate::system::{Equations, State, StateShift, System};
 
@@ -22,6 +23,10 @@ pub(super) struct Linearized {
     /// Loads of the rope joints per unit of each coefficient, for motion in the plane and only if a requested
     /// derivative needs them: one element per chain, or none.
     pub(super) units: Vec<UnitLoads>,
+    /// Derivatives that concern the memory of the axial laws, one list per chain; see [`Chain::memory_derivatives`].
+    ///
+    /// [`Chain::memory_derivatives`]: crate::model::chain::Chain::memory_derivatives
+    pub(super) memory: Vec<Vec<MemoryDerivatives>>,
 }
 
 impl Linearized {
@@ -32,6 +37,7 @@ impl Linearized {
             stiffness: equations.matrix(),
             factor: equations.matrix(),
             scratch: ForceBuffers::new(equations.machine),
+            memory: vec![Vec::new(); chains.len()],
             units: chains.filter(|_| units).map(UnitLoads::new).collect(),
         }
     }
@@ -99,6 +105,9 @@ impl Linearized {
         system.statistics = kept;
         let individual = &mut system.equations;
         individual.unit_loads(self.state.motion(), &mut self.units);
+        if individual.machine.extensions.has_axial() {
+            individual.memory_derivatives(self.state.motion(), &self.units, &mut self.memory);
+        }
         std::mem::swap(&mut individual.scratch, &mut self.scratch);
         // the run's past stays with the run
         let chains = individual.scratch.chains.iter_mut();

@@ -17,6 +17,7 @@ mod block;
 mod column;
 mod differences;
 mod linearized;
+mod memory;
 mod observer;
 mod perturbed;
 mod plan;

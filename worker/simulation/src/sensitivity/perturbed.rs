@@ -72,6 +72,16 @@ impl<'a> PerturbedModel<'a> {
         });
     }
 
+    /// Returns the memory of the axial laws in all joints, by chain.
+    pub(super) fn memory(&self) -> &[Vec<Memory>] {
+        &self.memory
+    }
+
+    /// Takes over the memory of another machine.
+    pub(super) fn remember_as(&mut self, other: &Self) {
+        self.memory.clone_from(&other.memory);
+    }
+
     /// Returns whether an axial law has memory, once a step has been accepted.
     pub(super) fn has_memory(&self) -> bool {
         self.memory.iter().any(|chain| !chain.is_empty())

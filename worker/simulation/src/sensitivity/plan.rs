@@ -183,6 +183,12 @@ fn choose_method(
             |extensions| ColumnMethod::Pieces(Box::new(extensions)),
         );
     }
+    // in space each perturbed machine has a memory of its own, which changes with every parameter
+    let axial = !machine.extensions.has_axial()
+        || machine.layout.motion == Motion::Space
+        || machine
+            .pieces_of(&*one.build())
+            .map_or(true, |own| own.has_axial());
     let built = |share: f64| {
         let difference = Difference::within(parameter, one.values[k], share);
         let machines = difference.steps.map(|step| {
@@ -196,12 +202,13 @@ fn choose_method(
         if first.layout != machine.layout || second.layout != machine.layout {
             return Err(Unavailable::Coordinates);
         }
-        let differing = ChangedTerms::between(machine, &first, one.descriptor().place);
+        let by = (one.descriptor().place, axial);
+        let differing = ChangedTerms::between(machine, &first, by);
         Ok((Box::new([first, second]), difference, differing))
     };
     let made = built(SMOOTH).and_then(|smooth| match smooth.2.terms {
         Some((terms, _)) if terms.contact.contains(&true) => built(TOUCHING),
-        Some((terms, _)) if terms.joints || terms.pulls => built(HYSTERETIC_STEP),
+        Some((terms, _)) if terms.joints || (terms.pulls && axial) => built(HYSTERETIC_STEP),
         _ => Ok(smooth),
     });
     match made {

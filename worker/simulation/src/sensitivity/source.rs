@@ -66,8 +66,8 @@ pub(super) struct ChangedTerms {
 
 impl ChangedTerms {
     /// Determines the differences between two machines; `place` is the part of the model that the varied
-    /// effect changes.
-    pub(super) fn between(own: &Machine, beside: &Machine, place: Place) -> Self {
+    /// effect changes, and `axial` states whether the effect has axial laws of its own.
+    pub(super) fn between(own: &Machine, beside: &Machine, (place, axial): (Place, bool)) -> Self {
         let (d, o) = (&own.description, &beside.description);
         let arcs = d.front_arc != o.front_arc || d.back_arc != o.back_arc;
         // damping of the modes acts on the modes alone
@@ -95,7 +95,7 @@ impl ChangedTerms {
             weights: d.rope != o.rope,
             ends: built || driven,
             joints,
-            pulls: any(Extensions::has_axial) && !joints,
+            pulls: any(Extensions::has_axial) && (axial || driven || both) && !joints,
             contact,
         };
         let touching = contact.contains(&true);

@@ -13,7 +13,9 @@
 use crate::effect::descriptor::{Descriptor, Place};
 use crate::effect::unit::Unit;
 use crate::math::elementary::exp;
-use crate::model::extension::{Axial, Effect, Extensions, LineForceValue, Memory, Site, Strain};
+use crate::model::extension::{
+    Axial, Effect, Extensions, LineForceValue, Memory, MemoryDerivatives, Site, Strain,
+};
 use crate::model::parallel_ropes::{BACK, FRONT};
 
 pub(super) fn descriptor() -> Descriptor {
@@ -47,8 +49,9 @@ impl Effect for BoucWen {
 
 impl BoucWen {
     /// Computes the hysteretic variable `z` after the strain has moved monotonically to `now`, and its
-    /// derivative with respect to the strain.
-    fn advanced(&self, [strain, z]: Memory, now: f64) -> [f64; 2] {
+    /// derivatives with respect to the strain and to `z` before; that with respect to the strain before is the negative
+    /// of the first.
+    fn advanced(&self, [strain, z]: Memory, now: f64) -> [f64; 3] {
         let moved = now - strain;
         let sense = if moved < 0.0 { -1.0 } else { 1.0 };
         let (mut w, mut way) = (sense * z, moved.abs());
@@ -57,11 +60,13 @@ impl BoucWen {
             w += straight;
             way -= straight;
             if w < 0.0 {
-                return [sense * w, 1.0];
+                return [sense * w, 1.0, 1.0];
             }
         }
-        let left = (1.0 - w / self.yields) * exp(-way / self.yields);
-        [sense * self.yields * (1.0 - left), left]
+        // w is zero where the sense of z has changed on the way
+        let decay = exp(-way / self.yields);
+        let left = (1.0 - w / self.yields) * decay;
+        [sense * self.yields * (1.0 - left), left, decay]
     }
 }
 
@@ -69,9 +74,9 @@ impl Axial for BoucWen {
     fn pull(&self, at: &Strain<'_>) -> LineForceValue {
         let stiffness = self.share * at.stiffness;
         // in the equilibrium before the run the slipping wires carry nothing
-        let [z, slope] = at
+        let [z, slope, _] = at
             .memory
-            .map_or([0.0; 2], |memory| self.advanced(memory, at.strain));
+            .map_or([0.0; 3], |memory| self.advanced(memory, at.strain));
         LineForceValue {
             spring: -stiffness * at.strain,
             energy: -0.5 * stiffness * at.strain * at.strain,
@@ -87,11 +92,27 @@ impl Axial for BoucWen {
             .map_or(0.0, |memory| self.advanced(memory, at.strain)[0]);
         Some([at.strain, z])
     }
+
+    fn memory_derivatives(&self, at: &Strain<'_>) -> Option<MemoryDerivatives> {
+        let mut own = MemoryDerivatives {
+            by_strain: [1.0, 0.0],
+            ..MemoryDerivatives::default()
+        };
+        if let Some(memory) = at.memory {
+            let [_, slope, kept] = self.advanced(memory, at.strain);
+            let stiffness = self.share * at.stiffness;
+            own.force = [-stiffness * slope, stiffness * kept];
+            own.by_strain[1] = slope;
+            own.by_memory = [[0.0, -slope], [0.0, kept]];
+        }
+        Some(own)
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::drive::DriveState;
 
     /// Checks that the closed form gives the same `z` for any step size and solves the differential equation.
     #[test]
@@ -124,5 +145,58 @@ mod tests {
             }
         }
         assert!((z - exact).abs() < 1e-8, "{z} {exact}");
+    }
+
+    /// Checks the derivatives that concern the memory against differences in unloading, where `z` changes its sign on
+    /// the way, and in loading.
+    #[test]
+    fn memory_derivatives_agree_with_differences() {
+        let law = BoucWen {
+            share: 0.1,
+            yields: 3e-4,
+        };
+        let drive = DriveState::default();
+        let at = |[strain, before, z]: [f64; 3]| Strain {
+            drive: &drive,
+            strain,
+            rate: 0.0,
+            stiffness: 1e7,
+            memory: Some([before, z]),
+        };
+        let all = |x: [f64; 3]| {
+            let [first, second] = law.next_memory(&at(x)).unwrap();
+            let LineForceValue {
+                spring,
+                non_conservative: other,
+                ..
+            } = law.pull(&at(x));
+            [first, second, (spring + other) * 1e-6]
+        };
+        for x in [[7e-4, 8e-4, 2e-4], [-5e-4, 8e-4, 2e-4], [3e-4, 0.0, 1e-4]] {
+            let h = 1e-8;
+            let by = |k: usize| {
+                let moved = |step: f64| {
+                    let mut x = x;
+                    x[k] += step;
+                    all(x)
+                };
+                let (up, down) = (moved(h), moved(-h));
+                std::array::from_fn::<_, 3, _>(|row| (up[row] - down[row]) / (2.0 * h))
+            };
+            let found = law.memory_derivatives(&at(x)).unwrap();
+            let strain = by(0);
+            for (found, expected) in found.by_strain.into_iter().zip(strain) {
+                assert!((found - expected).abs() < 1e-6, "{x:?}: {found} {expected}");
+            }
+            for k in 0..2 {
+                let [first, second] = found.by_memory[k];
+                for (found, expected) in [first, second, found.force[k] * 1e-6]
+                    .into_iter()
+                    .zip(by(k + 1))
+                {
+                    assert!((found - expected).abs() < 1e-6, "{x:?}: {found} {expected}");
+                }
+            }
+        }
     }
 }

@@ -5,8 +5,9 @@
 //! in space.
 use super::parts::{Chain, Joints};
 use super::state::ChainState;
+use super::unit_loads::UnitLoads;
 use crate::element::bushing::{AxialTension, LinkLoad};
-use crate::model::extension::LineForceValue;
+use crate::model::extension::{LineForceValue, MemoryDerivatives};
 
 #[expect(
     clippy::multiple_inherent_impl,
@@ -85,6 +86,30 @@ impl Chain {
             memory.clear();
         }
         state.memory = memory;
+    }
+
+    /// Computes the derivatives that concern the memory of the rope's axial laws, for each joint between two cylinders
+    /// and each law, for motion in the plane; `out` is empty where no law has memory.
+    pub(crate) fn memory_derivatives(
+        &self,
+        joints: &Joints<'_>,
+        (state, units): (&ChainState, &UnitLoads),
+        out: &mut Vec<MemoryDerivatives>,
+    ) {
+        out.clear();
+        let Some(laws) = joints.axial else { return };
+        let mut any = false;
+        for joint in 1..self.count {
+            let memories = state.memory.chunks_exact(laws.len()).nth(joint);
+            let each = laws.memory_derivatives(units.stretch(joint - 1), memories.unwrap_or(&[]));
+            out.extend(each.map(|own| {
+                any |= own.is_some();
+                own.unwrap_or_default()
+            }));
+        }
+        if !any {
+            out.clear();
+        }
     }
 
     /// Returns the extension \[m\] of a joint between two cylinders and its rate [m/s].

@@ -6,6 +6,7 @@ use super::parts::{Chain, Joints};
 use super::state::ChainState;
 use crate::element::bushing::{Bushing, LinkLoad, Marker};
 use crate::element::plane::{DEFORMATIONS, PlaneJoint};
+use crate::linear::Lanes;
 use crate::math::real::{Vector, WIDEST};
 use crate::model::pose::PlanePoses;
 use pulp::{Arch, Simd, WithSimd};
@@ -73,6 +74,40 @@ impl UnitLoads {
             for (to, sum) in cylinder.iter_mut().zip(sum) {
                 *entry(to) += sum;
             }
+        }
+    }
+
+    /// Returns the extension \[m\] and its rate [m/s] of joint `k` of those between two cylinders.
+    pub(crate) fn stretch(&self, k: usize) -> [f64; 2] {
+        [0, DEFORMATIONS].map(|amount| self.amounts[amount][k])
+    }
+
+    /// Returns the derivatives of the extension of joint `k`, one lane per column, from those of the chain's
+    /// coordinates.
+    pub(crate) fn extension_by(&self, k: usize, coordinates: &[Lanes]) -> Lanes {
+        let [x, y, torque_i, torque_j] = self.loads[0].each_ref().map(|array| array[k]);
+        let (cylinders, _) = coordinates.as_chunks::<3>();
+        let [before, behind] = [cylinders[k], cylinders[k + 1]];
+        // a unit tension does the work of -1 times the extension
+        (before[0] - behind[0]) * x + (before[1] - behind[1]) * y
+            - before[2] * torque_j
+            - behind[2] * torque_i
+    }
+
+    /// Adds the generalised forces of tensions at the joints between two cylinders, one lane per column, to those of
+    /// the chain's cylinders.
+    pub(crate) fn add_tensions(&self, tension: impl Fn(usize) -> Lanes, force: &mut [Lanes]) {
+        let [x, y, torque_i, torque_j] = self.loads[0].each_ref();
+        let (cylinders, _) = force.as_chunks_mut::<3>();
+        for k in 0..self.count {
+            let own = tension(k);
+            let along = [own * x[k], own * y[k]];
+            for (axis, along) in along.into_iter().enumerate() {
+                cylinders[k][axis] -= along;
+                cylinders[k + 1][axis] += along;
+            }
+            cylinders[k][2] += own * torque_j[k];
+            cylinders[k + 1][2] += own * torque_i[k];
         }
     }
 

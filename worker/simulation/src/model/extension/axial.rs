@@ -21,10 +21,26 @@ pub trait Axial: Debug + Send + Sync {
     fn next_memory(&self, _at: &Strain<'_>) -> Option<Memory> {
         None
     }
+
+    /// Returns the derivatives that concern the law's memory; `None` for a law without memory.
+    fn memory_derivatives(&self, _at: &Strain<'_>) -> Option<MemoryDerivatives> {
+        None
+    }
 }
 
 /// Memory of an axial law with hysteresis: strain \[1\] and internal variable at the last accepted step.
 pub type Memory = [f64; 2];
+
+/// Derivatives of an axial law and of its next memory at a joint, at fixed parameters of the law.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct MemoryDerivatives {
+    /// Derivatives of the tensile force with respect to both numbers of the memory \[N\] per unit of each.
+    pub force: Memory,
+    /// Derivatives of both numbers of the next memory with respect to the strain.
+    pub by_strain: Memory,
+    /// Derivatives of both numbers of the next memory with respect to each number of the memory.
+    pub by_memory: [Memory; 2],
+}
 
 /// State of a rope joint at which an axial law is evaluated.
 #[derive(Clone, Copy, Debug)]
@@ -118,6 +134,30 @@ impl AxialLaws<'_> {
             }
         }
         any
+    }
+
+    /// Returns the derivatives of each law at a joint that concern its memory, `None` for a law without one: those of
+    /// the force of this rope, and those of the next memory with respect to the joint's extension \[m\] and to the
+    /// memory.
+    pub(crate) fn memory_derivatives(
+        &self,
+        [extension, rate]: [f64; 2],
+        memories: &[Memory],
+    ) -> impl Iterator<Item = Option<MemoryDerivatives>> {
+        let at = self.strain(extension, rate);
+        let RopeProperties { share, length, .. } = self.carrier;
+        self.laws.iter().enumerate().map(move |(k, law)| {
+            let at = Strain {
+                memory: memories.get(k).copied(),
+                ..at
+            };
+            let own = law.memory_derivatives(&at)?;
+            Some(MemoryDerivatives {
+                force: own.force.map(|by| share * by),
+                by_strain: own.by_strain.map(|by| by / length),
+                ..own
+            })
+        })
     }
 
     fn strain(&self, extension: f64, rate: f64) -> Strain<'_> {

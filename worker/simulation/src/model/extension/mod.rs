@@ -12,7 +12,7 @@ pub(crate) mod reading;
 pub(crate) mod set;
 
 pub use along::LineForceValue;
-pub use axial::{Axial, Memory, Strain};
+pub use axial::{Axial, Memory, MemoryDerivatives, Strain};
 pub use effect::{Effect, Site};
 pub use force::Force;
 pub(crate) use line::dry_friction;

@@ -147,6 +147,11 @@ impl Extensions {
         (&self.profile, self.rise) == (&other.profile, other.rise)
     }
 
+    /// Returns the number of axial laws of the back rope and of the front rope.
+    pub(crate) fn axial_laws(&self) -> [usize; 2] {
+        self.axial.each_ref().map(Vec::len)
+    }
+
     /// Returns whether any rope has axial laws.
     pub(crate) fn has_axial(&self) -> bool {
         self.axial.iter().any(|laws| !laws.is_empty())

@@ -7,6 +7,7 @@ use super::block::{Block, StagePredictor};
 use super::column::{Columns, Derivative, DerivativeCurves, Unavailable};
 use super::differences::Difference;
 use super::linearized::Linearized;
+use super::memory::MemoryColumns;
 use super::perturbed::PerturbedModel;
 use super::plan::{ColumnMethod, DerivativePlan};
 use crate::integrator::stepper::Stages;
@@ -68,6 +69,8 @@ struct SensitivityObserver<'a, 'o> {
     own: PerturbedModel<'a>,
     active: Vec<Active<'a>>,
     blocks: Vec<Block>,
+    /// Derivatives of the memory of axial laws, one element per block.
+    memories: Vec<MemoryColumns>,
     /// Buffers of the sensitivity analysis; `None` until the run starts.
     room: Option<Workspace>,
     /// Reason why the derivatives could not be propagated to the end; `None` while they can.
@@ -115,6 +118,7 @@ impl<'a, 'o> SensitivityObserver<'a, 'o> {
             settings: *settings,
             observer,
             blocks: Vec::new(),
+            memories: Vec::new(),
             room: None,
             missing,
             ends: std::array::from_fn(|_| State::at_rest(0.0, Vec::new())),

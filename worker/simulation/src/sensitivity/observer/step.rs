@@ -3,7 +3,9 @@ use super::super::active::Active;
 use super::super::between::add_column;
 use super::super::block::{Block, StagePredictor};
 use super::super::column::Unavailable;
+use super::super::differences::Difference;
 use super::super::linearized::Linearized;
+use super::super::memory::MemoryColumns;
 use super::super::source::{PULLS, Source};
 use super::{SensitivityObserver, Workspace};
 use crate::integrator::dense::Weights;
@@ -47,6 +49,7 @@ impl SensitivityObserver<'_, '_> {
                 source,
                 perturbed: sides,
                 difference,
+                memory_by_state,
                 ..
             } = active;
             let between = (&mut self.own, &mut sides[..], &*difference);
@@ -67,7 +70,7 @@ impl SensitivityObserver<'_, '_> {
                 }
             }
             // what the laws along the ropes remember depends on every unknown
-            if matches!(source, Source::Joints(_) | Source::Contact { .. }) {
+            if !*memory_by_state && matches!(source, Source::Joints(_) | Source::Contact { .. }) {
                 let weights = difference.weights;
                 for (side, weight) in sides.iter_mut().zip(weights) {
                     if side.has_memory() {
@@ -80,12 +83,14 @@ impl SensitivityObserver<'_, '_> {
             }
         }
         std::mem::swap(&mut individual.scratch, &mut at.scratch);
+        self.memories[block].add_forces(at, &self.own.machine.chains, right);
     }
 
-    /// Updates the memory of axial laws after a step, for the simulated machine and for the machines with
-    /// perturbed parameters.
-    fn remember(&mut self, state: &State) {
+    /// Updates the memory of axial laws after a step, whose end is stage `end` of those that are stored, for the
+    /// simulated machine and for the machines with perturbed parameters, and its derivatives.
+    fn remember(&mut self, state: &State, end: usize) {
         let Some(Workspace {
+            stages,
             scratch,
             state: beside,
             ..
@@ -93,11 +98,31 @@ impl SensitivityObserver<'_, '_> {
         else {
             return;
         };
+        let chains = &self.own.machine.chains;
         self.own.remember(scratch, state);
+        for (memory, block) in self.memories.iter_mut().zip(&self.blocks) {
+            memory.advance(&stages[end], chains, &block.ends[0].q);
+        }
         for (at, active) in self.active.iter_mut().enumerate() {
             let Some(block) = self.blocks.get(at / LANES) else {
                 break;
             };
+            let (memory, lane) = (&mut self.memories[at / LANES], at % LANES);
+            if active.memory_by_state {
+                if active.changes_laws() {
+                    let Difference { weights, own, .. } = active.difference;
+                    memory.add(lane, own, self.own.memory(), chains);
+                    for (side, weight) in active.perturbed.iter_mut().zip(weights) {
+                        side.remember(scratch, state);
+                        memory.add(lane, weight, side.memory(), chains);
+                    }
+                }
+                for side in &mut active.perturbed {
+                    side.remember_as(&self.own);
+                }
+                continue;
+            }
+            memory.clear(lane);
             let now = &block.ends[0];
             let weights = Weights::at([0.0, 1.0], 0.0);
             for (side, step) in active.perturbed.iter_mut().zip(active.difference.steps) {
@@ -153,7 +178,7 @@ impl SensitivityObserver<'_, '_> {
         for (end, now) in self.ends.iter_mut().zip(ends) {
             end.clone_from(now);
         }
-        self.remember(ends[1]);
+        self.remember(ends[1], kept - 1);
         Ok(())
     }
 
@@ -170,12 +195,13 @@ impl SensitivityObserver<'_, '_> {
         let blocks = moving.count().div_ceil(LANES);
         // the explicit first stage is where the step begins, the last one where it ends
         self.blocks = vec![Block::new(n, stages - 2); blocks];
+        self.memories = vec![MemoryColumns::new(self.own.machine.chains.len()); blocks];
         let asked = |active: &Active<'_>| match active.source {
             Source::Joints(_) => true,
             Source::Pieces(extensions) => extensions.has_axial(),
             Source::Contact { .. } | Source::Difference(..) | Source::Nothing => false,
         };
-        let asked = self.active.iter().any(asked);
+        let asked = self.own.machine.extensions.has_axial() || self.active.iter().any(asked);
         let units = asked && self.own.machine.layout.motion == Motion::Plane;
         let kept = if blocks > CACHED_BLOCKS {
             stages - 1
@@ -211,7 +237,7 @@ impl SensitivityObserver<'_, '_> {
                 self.blocks[block].rest(&room.stages[0], &mut room.right);
             }
         }
-        self.remember(state);
+        self.remember(state, 0);
         Ok(())
     }
 }
