@@ -453,8 +453,6 @@ fn every_column_agrees_with_differences_on_the_same_steps() {
     let seeds: Vec<_> = (0..60).filter(own).take(30).collect();
     println!("individuals {seeds:?}");
     assert!(compare(&fast(), &sizes(1), &mut judged));
-    let (subject, _) = present("rope_hysteresis");
-    assert!(compare(&subject, &sizes(2), &mut judged));
     for descriptor in catalogue().iter().filter(|d| !d.generic) {
         let (subject, mut columns) = present(&descriptor.id);
         columns.extend(BESIDE.map(Column::Coefficient));
