@@ -9,7 +9,7 @@ use protocol::{
 /// Number of times the iteration budget of the case that a simulation of a diagnosis has. A machine that is given up is a
 /// hole in the misfit, at whose edge a fit ends: with the budget of the case, 1,717 of 4,600 simulations of practice
 /// set 2 were given up, and the answer with them under the other condition; with four times as many, 134 of 3,721.
-const PATIENCE: u64 = 4;
+const BUDGET_FACTOR: u64 = 4;
 
 /// Returns the numerical settings for the simulations of a diagnosis, and those for its check of the
 /// discretisation error: everything refined, only the cylinders of the ropes refined, everything else
@@ -26,7 +26,7 @@ pub(super) fn numerics(
     let available = machine.modal_head.frequencies_hz.len();
     let usual = Discretisation {
         longest_step_s: Some(step * machine.run.longest_step_s),
-        budget: Some(PATIENCE.saturating_mul(machine.run.iteration_budget)),
+        budget: Some(BUDGET_FACTOR.saturating_mul(machine.run.iteration_budget)),
         ..Discretisation::default()
     };
     let finest = Discretisation {

@@ -82,11 +82,6 @@ impl<'a> PerturbedModel<'a> {
         self.memory.clone_from(&other.memory);
     }
 
-    /// Returns whether an axial law has memory, once a step has been accepted.
-    pub(super) fn has_memory(&self) -> bool {
-        self.memory.iter().any(|chain| !chain.is_empty())
-    }
-
     /// Updates the memory of axial laws from an accepted state.
     pub(super) fn remember(&mut self, scratch: &mut ForceBuffers, state: &State) {
         if self.machine.extensions.has_axial() {

@@ -134,12 +134,6 @@ pub(super) const ROPES: Terms = Terms {
     ..Terms::NONE
 };
 
-/// Selection of the axial laws that effects add to the rope joints.
-pub(super) const PULLS: Terms = Terms {
-    pulls: true,
-    ..Terms::NONE
-};
-
 impl Source<'_> {
     /// Computes `dR/dp` into `sum`, at a state whose cylinder poses and contact points `individual` holds;
     /// `units` are the result of [`RopeMachine::unit_loads`], empty in space.

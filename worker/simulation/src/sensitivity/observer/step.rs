@@ -6,7 +6,7 @@ use super::super::column::Unavailable;
 use super::super::differences::Difference;
 use super::super::linearized::Linearized;
 use super::super::memory::MemoryColumns;
-use super::super::source::{PULLS, Source};
+use super::super::source::Source;
 use super::{SensitivityObserver, Workspace};
 use crate::integrator::dense::Weights;
 use crate::integrator::stepper::Stages;
@@ -49,7 +49,6 @@ impl SensitivityObserver<'_, '_> {
                 source,
                 perturbed: sides,
                 difference,
-                memory_by_state,
                 ..
             } = active;
             let between = (&mut self.own, &mut sides[..], &*difference);
@@ -67,18 +66,6 @@ impl SensitivityObserver<'_, '_> {
                 source.right_hand_side(individual, place, between, [one, sum]);
                 for (right, sum) in right.iter_mut().zip(&*sum) {
                     right.0[lane] = *sum;
-                }
-            }
-            // what the laws along the ropes remember depends on every unknown
-            if !*memory_by_state && matches!(source, Source::Joints(_) | Source::Contact { .. }) {
-                let weights = difference.weights;
-                for (side, weight) in sides.iter_mut().zip(weights) {
-                    if side.has_memory() {
-                        side.residual(&mut individual.scratch, &at.state, (PULLS, false), one);
-                        for (right, one) in right.iter_mut().zip(&*one) {
-                            right.0[lane] += weight * one;
-                        }
-                    }
                 }
             }
         }
