@@ -294,11 +294,14 @@ fn check_without_curves(
     }
 }
 
-/// Compares computed derivatives with differences; returns whether the run gave derivatives at all. Where
-/// differences of two step sizes agree to 2e-5, the derivative must agree to 1e-4; elsewhere it must agree to
-/// 1e-3 if a typical change of the unknown moves the curve by more than 0.05. Of the two step sizes, the one
-/// whose extrapolated and plain differences agree better is used, because extrapolation amplifies rounding
-/// errors fourfold. Derivatives without curves are checked, too.
+/// Largest distance of extrapolated and plain differences that can judge a derivative.
+const ABLE: f64 = 2e-5;
+
+/// Compares computed derivatives with differences of two step sizes; returns whether the run gave derivatives at
+/// all. Where extrapolated and plain differences of a step size agree to [`ABLE`], the derivative must agree with
+/// them to 1e-4, with those of either step size if both do; elsewhere it must agree to 1e-3 with the step size whose
+/// two differences agree better, if a typical change of the unknown moves the curve by more than 0.05. Derivatives
+/// without curves are checked, too.
 fn compare(subject: &Subject, columns: &[Column], judged: &mut Judged) -> bool {
     let Some((found, steps)) = subject.columns(columns) else {
         return false;
@@ -328,14 +331,18 @@ fn compare(subject: &Subject, columns: &[Column], judged: &mut Judged) -> bool {
             let found = smooth(&found);
             let judges = each.each_ref().map(|[best, fine]| {
                 let best = smooth(best);
-                (distance(&best, &smooth(fine)), best)
+                [distance(&best, &smooth(fine)), distance(&found, &best)]
             });
-            let judge = judges.into_iter().min_by(|x, y| x.0.total_cmp(&y.0));
-            let (apart, judge) = judge.unwrap();
+            // where contact opens within the larger step, both of its halves can agree on a wrong difference
+            let able = |judge: &[f64; 2]| judge[0] < ABLE;
+            let best = judges.into_iter().min_by(|x, y| match [able(x), able(y)] {
+                [true, true] => x[1].total_cmp(&y[1]),
+                _ => x[0].total_cmp(&y[0]),
+            });
+            let [apart, off] = best.unwrap();
             let size = norm(&found) / (found.len() as f64).sqrt() * weight * usual(column);
-            let off = distance(&found, &judge);
             println!("{column:?}: {size:.2e} {unit}, off {off:.1e}, judge {apart:.1e}");
-            let able = apart < 2e-5;
+            let able = apart < ABLE;
             if size > 0.05 {
                 judged.of += 1;
                 judged.able += usize::from(able);
