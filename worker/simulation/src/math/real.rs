@@ -109,6 +109,20 @@ impl<S: Simd> Vector<S> {
     pub const fn lanes(self) -> S::f64s {
         self.lanes
     }
+
+    /// Returns the vector of the first elements of an array.
+    #[inline(always)]
+    pub fn from_array(simd: S, array: &[f64; WIDEST]) -> Self {
+        Self::new(simd, S::as_simd_f64s(array).0[0])
+    }
+
+    /// Returns the lanes as the first elements of an array, whose rest is zero.
+    #[inline(always)]
+    pub fn to_array(self) -> [f64; WIDEST] {
+        let mut array = [0.0; WIDEST];
+        S::as_mut_simd_f64s(&mut array).0[0] = self.lanes;
+        array
+    }
 }
 
 macro_rules! operator {
@@ -167,15 +181,14 @@ impl<S: Simd> Real for Vector<S> {
 
     #[inline(always)]
     fn each<const K: usize>(self, function: impl Fn(f64) -> [f64; K]) -> [Self; K] {
-        let mut arguments = [0.0; WIDEST];
-        S::as_mut_simd_f64s(&mut arguments).0[0] = self.lanes;
+        let arguments = self.to_array();
         let mut results = [[0.0; WIDEST]; K];
         for (lane, x) in arguments[..S::F64_LANES].iter().enumerate() {
             for (results, y) in results.iter_mut().zip(function(*x)) {
                 results[lane] = y;
             }
         }
-        results.map(|results| Self::new(self.simd, S::as_simd_f64s(&results).0[0]))
+        results.map(|results| Self::from_array(self.simd, &results))
     }
 }
 

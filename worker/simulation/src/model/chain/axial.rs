@@ -7,7 +7,81 @@ use super::parts::{Chain, Joints};
 use super::state::ChainState;
 use super::unit_loads::UnitLoads;
 use crate::element::bushing::{AxialTension, LinkLoad};
-use crate::model::extension::{LineForceValue, MemoryDerivatives};
+use crate::element::law::LawResponse;
+use crate::element::plane::{DEFORMATIONS, PlaneJoint};
+use crate::math::real::{Vector, WIDEST};
+use crate::model::extension::axial::AxialLaws;
+use crate::model::extension::{LineForceValue, Memory, MemoryDerivatives};
+use pulp::Simd;
+
+/// Axial effect laws of a rope, with the memory of its joints.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct AxialEffects<'a> {
+    laws: AxialLaws<'a>,
+    memory: &'a [Memory],
+}
+
+impl<'a> AxialEffects<'a> {
+    /// Returns the laws of a rope with the memory of its joints; `None` for a rope without laws.
+    pub(super) fn new(joints: &Joints<'a>, memory: &'a [Memory]) -> Option<Self> {
+        Some(Self {
+            laws: joints.axial?,
+            memory,
+        })
+    }
+
+    /// Evaluates the laws at a joint between two cylinders with the given extension \[m\] and its rate [m/s].
+    fn force(&self, joint: usize, [extension, rate]: [f64; 2]) -> LineForceValue {
+        let first = joint * self.laws.len();
+        let own = self.memory.get(first..first + self.laws.len());
+        self.laws.pull(extension, rate, own.unwrap_or(&[]))
+    }
+
+    /// Returns the additional tension of the laws at a joint between two cylinders with the given extension \[m\] and
+    /// its rate [m/s].
+    fn tension(&self, joint: usize, at: [f64; 2]) -> AxialTension {
+        let along = self.force(joint, at);
+        AxialTension {
+            force: along.spring + along.non_conservative,
+            dissipated: along.non_conservative * at[1],
+            by_extension: along.by_place,
+            by_rate: along.by_rate,
+        }
+    }
+
+    /// Adds the laws to the answers of the joints' own law in SIMD lanes, of which the first is joint `first` and
+    /// the last at most joint `last`.
+    #[expect(
+        clippy::inline_always,
+        reason = "compiled for each set of instructions"
+    )]
+    #[inline(always)]
+    pub(super) fn add_to<S: Simd>(
+        &self,
+        simd: S,
+        [first, last]: [usize; 2],
+        at: &PlaneJoint<Vector<S>>,
+        answer: &mut LawResponse<Vector<S>, DEFORMATIONS>,
+    ) {
+        let (extensions, rates) = (at.deformation[0].to_array(), at.rate[0].to_array());
+        let mut further = [[0.0; WIDEST]; 4];
+        for joint in first..=last.min(first + S::F64_LANES - 1) {
+            let lane = joint - first;
+            let tension = self.tension(joint, [extensions[lane], rates[lane]]);
+            further[0][lane] = tension.force;
+            further[1][lane] = tension.by_extension;
+            further[2][lane] = tension.by_rate;
+            further[3][lane] = tension.dissipated;
+        }
+        let [force, by_extension, by_rate, dissipated] = further
+            .each_ref()
+            .map(|lanes| Vector::from_array(simd, lanes));
+        answer.force[0] = answer.force[0] + force;
+        answer.stiffness[0][0] = answer.stiffness[0][0] + by_extension;
+        answer.damping[0][0] = answer.damping[0][0] + by_rate;
+        answer.dissipated = answer.dissipated + dissipated;
+    }
+}
 
 #[expect(
     clippy::multiple_inherent_impl,
@@ -23,9 +97,10 @@ impl Chain {
         joints: &Joints<'_>,
         state: &ChainState,
     ) -> Option<(LineForceValue, [f64; 2])> {
-        joints.axial.filter(|_| joint > 0 && joint < self.count)?;
+        let laws = AxialEffects::new(joints, &state.memory);
+        let laws = laws.filter(|_| joint > 0 && joint < self.count)?;
         let at = self.extension(joint, joints, state)?;
-        Some((axial_force(joint, joints, state, at)?, at))
+        Some((laws.force(joint, at), at))
     }
 
     /// Returns the additional tension of the axial effect laws at a joint, with its derivatives and its
@@ -37,28 +112,27 @@ impl Chain {
         joints: &Joints<'_>,
         state: &ChainState,
     ) -> Option<AxialTension> {
-        let (along, [_, rate]) = self.axial_effect(joint, joints, state)?;
-        Some(tension(along, rate))
+        let laws = AxialEffects::new(joints, &state.memory);
+        let laws = laws.filter(|_| joint > 0 && joint < self.count)?;
+        Some(laws.tension(joint, self.extension(joint, joints, state)?))
     }
 
     /// Adds the forces of the axial effect laws on the cylinders to `force`, without the joints' own forces.
     pub(crate) fn add_pulls(&self, joints: &Joints<'_>, state: &ChainState, force: &mut [f64]) {
+        let Some(laws) = AxialEffects::new(joints, &state.memory) else {
+            return;
+        };
         for joint in 1..self.count {
             if self.in_plane(joint) {
-                let at = self.plane_geometry(joint, state);
-                let stretched = [at.deformation[0], at.rate[0]];
-                let Some(pull) = pull_at(joint, joints, state, stretched) else {
-                    return;
-                };
+                let at = self.plane_joint(joint, state);
+                let pull = laws.tension(joint, [at.deformation[0], at.rate[0]]);
                 let load = at.load([pull.force, 0.0, 0.0]);
                 let rows = force[(self.first + joint - 1) * 3..].iter_mut();
                 for (force, own) in rows.zip(load.on_coordinates()) {
                     *force += own;
                 }
             } else if let Some(([i, j], law)) = self.link(joint, joints, state) {
-                let Some(pull) = pull_at(joint, joints, state, law.extension(&i, &j)) else {
-                    return;
-                };
+                let pull = laws.tension(joint, law.extension(&i, &j));
                 let mut load = LinkLoad::none();
                 law.add_pull((&i, &j), &pull, &mut load);
                 self.add_load(joint, &load, state, force);
@@ -115,45 +189,10 @@ impl Chain {
     /// Returns the extension \[m\] of a joint between two cylinders and its rate [m/s].
     fn extension(&self, joint: usize, joints: &Joints<'_>, state: &ChainState) -> Option<[f64; 2]> {
         if self.in_plane(joint) {
-            let at = self.plane_geometry(joint, state);
+            let at = self.plane_joint(joint, state);
             return Some([at.deformation[0], at.rate[0]]);
         }
         let ([i, j], law) = self.link(joint, joints, state)?;
         Some(law.extension(&i, &j))
-    }
-}
-
-/// Returns the additional tension of the axial effect laws at a joint between two cylinders with the given
-/// extension \[m\] and its rate [m/s]; `None` for a rope without such laws.
-#[inline]
-pub(super) fn pull_at(
-    joint: usize,
-    joints: &Joints<'_>,
-    state: &ChainState,
-    at: [f64; 2],
-) -> Option<AxialTension> {
-    Some(tension(axial_force(joint, joints, state, at)?, at[1]))
-}
-
-/// Evaluates the axial effect laws of the rope at a joint between two cylinders.
-#[inline]
-fn axial_force(
-    joint: usize,
-    joints: &Joints<'_>,
-    state: &ChainState,
-    [extension, rate]: [f64; 2],
-) -> Option<LineForceValue> {
-    let laws = joints.axial?;
-    let memories = state.memory.chunks_exact(laws.len()).nth(joint);
-    Some(laws.pull(extension, rate, memories.unwrap_or(&[])))
-}
-
-/// Returns the tension of axial effect laws at a rate of extension [m/s].
-fn tension(along: LineForceValue, rate: f64) -> AxialTension {
-    AxialTension {
-        force: along.spring + along.non_conservative,
-        dissipated: along.non_conservative * rate,
-        by_extension: along.by_place,
-        by_rate: along.by_rate,
     }
 }

@@ -37,7 +37,7 @@ impl Chain {
     ) {
         for joint in 0..=self.count {
             if self.in_plane(joint) {
-                let at = self.plane_geometry(joint, state);
+                let at = self.plane_joint(joint, state);
                 *sum += joints.inner.response(at.deformation, at.rate).energy;
             } else if let Some(([i, j], law)) = self.link(joint, joints, state) {
                 *sum += law.energy(&i, &j);

@@ -1,16 +1,15 @@
 //! Joints between the cylinders of a chain in the plane: forces, and stiffness and damping by the coordinates.
 //!
-//! The law is that of the bushing, to which the axial laws of effects add a tension. Without such laws the
-//! joints are evaluated side by side in SIMD lanes, otherwise one after the other; both have the same bits.
-//! The two end joints use the bushing in space.
-use super::axial::pull_at;
+//! The joints are evaluated side by side in SIMD lanes. Their law is that of the bushing, to which the axial laws of
+//! effects, evaluated lane by lane, add a tension. The two end joints use the bushing in space.
+use super::axial::AxialEffects;
 use super::parts::{Chain, Joints};
 use super::state::{ChainState, PlaneLoads};
 use crate::element::bushing::{Bushing, LinkLoad};
 use crate::element::law::{ForceLaw, LawResponse};
 use crate::element::plane::{INDEPENDENT, PlaneJoint, PlaneTangent, Side};
 use crate::linear::{Blocks, MatrixBlock};
-use crate::math::real::{Vector, WIDEST};
+use crate::math::real::Vector;
 use crate::model::pose::PlanePoses;
 use pulp::{Arch, Simd, WithSimd};
 use std::ops::Range;
@@ -18,6 +17,7 @@ use std::ops::Range;
 /// Evaluation of all joints between the cylinders of a chain, compiled for each set of instructions.
 struct Evaluate<'a> {
     law: &'a Bushing,
+    axial: Option<AxialEffects<'a>>,
     half: f64,
     poses: &'a PlanePoses,
     loads: &'a mut PlaneLoads,
@@ -34,6 +34,7 @@ impl WithSimd for Evaluate<'_> {
     fn with_simd<S: Simd>(self, simd: S) {
         let Self {
             law,
+            axial,
             half,
             poses,
             loads,
@@ -54,7 +55,11 @@ impl WithSimd for Evaluate<'_> {
             out.map(|array| &mut S::as_mut_simd_f64s(array).0[..vectors]);
         for k in 0..vectors {
             let joint = PlaneJoint::new(half, &behind.get(k), &before.get(k));
-            let answer: LawResponse<Vector<S>, 3> = law.response(joint.deformation, joint.rate);
+            let mut answer: LawResponse<Vector<S>, 3> = law.response(joint.deformation, joint.rate);
+            if let Some(axial) = &axial {
+                let range = [1 + k * S::F64_LANES, loads.count];
+                axial.add_to(simd, range, &joint, &mut answer);
+            }
             let load = joint.load(answer.force);
             x[k] = load.force[0].lanes();
             y[k] = load.force[1].lanes();
@@ -71,30 +76,9 @@ impl WithSimd for Evaluate<'_> {
     reason = "one file per term of the equations"
 )]
 impl Chain {
-    /// Returns the joint between two cylinders in the plane, and the answer of its law together with the axial
-    /// laws of effects.
-    #[inline]
-    pub(super) fn plane_joint(
-        &self,
-        joint: usize,
-        joints: &Joints<'_>,
-        state: &ChainState,
-    ) -> (PlaneJoint<f64>, LawResponse<f64, 3>) {
-        let at = self.plane_geometry(joint, state);
-        let mut answer = joints.inner.response(at.deformation, at.rate);
-        let stretched = [at.deformation[0], at.rate[0]];
-        if let Some(further) = pull_at(joint, joints, state, stretched) {
-            answer.force[0] += further.force;
-            answer.stiffness[0][0] += further.by_extension;
-            answer.damping[0][0] += further.by_rate;
-            answer.dissipated += further.dissipated;
-        }
-        (at, answer)
-    }
-
     /// Returns the joint between two cylinders in the plane.
     #[inline]
-    pub(super) fn plane_geometry(&self, joint: usize, state: &ChainState) -> PlaneJoint<f64> {
+    pub(super) fn plane_joint(&self, joint: usize, state: &ChainState) -> PlaneJoint<f64> {
         let [i, j] = [state.plane.rod(joint), state.plane.rod(joint - 1)];
         PlaneJoint::new(0.5 * self.pitch, &i, &j)
     }
@@ -108,26 +92,13 @@ impl Chain {
         force: &mut [f64],
     ) {
         self.add_plane_ends(joints, state, force);
-        if joints.axial.is_some() {
-            for joint in 1..self.count {
-                let (at, answer) = self.plane_joint(joint, joints, state);
-                let load = at.load(answer.force);
-                let loads = &mut state.plane_joints;
-                for k in 0..2 {
-                    loads.force[k][joint - 1] = load.force[k];
-                    loads.torque[k][joint - 1] = load.torque[k];
-                }
-                loads.tension[joint - 1] = answer.force[0];
-                loads.dissipated[joint - 1] = answer.dissipated;
-            }
-        } else {
-            Arch::new().dispatch(Evaluate {
-                law: joints.inner,
-                half: 0.5 * self.pitch,
-                poses: &state.plane,
-                loads: &mut state.plane_joints,
-            });
-        }
+        Arch::new().dispatch(Evaluate {
+            law: joints.inner,
+            axial: AxialEffects::new(joints, &state.memory),
+            half: 0.5 * self.pitch,
+            poses: &state.plane,
+            loads: &mut state.plane_joints,
+        });
         let loads = &state.plane_joints;
         let n = loads.count;
         let [x, y] = loads.force.each_ref().map(|array| &array[..n]);
@@ -191,35 +162,17 @@ impl Chain {
         joints: &Joints<'_>,
         state: &ChainState,
         gamma: f64,
-        (mut alone, matrix): (Option<&mut Blocks<3>>, &mut Blocks<3>),
+        (alone, matrix): (Option<&mut Blocks<3>>, &mut Blocks<3>),
     ) {
-        if joints.axial.is_none() {
-            Arch::new().dispatch(AddTangent {
-                law: joints.inner,
-                half: 0.5 * self.pitch,
-                poses: &state.plane,
-                joints: self.first + 1..self.first + self.count,
-                gamma,
-                matrices: (alone, matrix),
-            });
-            return;
-        }
-        let mut carried = [Carried::default(); 2];
-        for joint in 1..self.count {
-            let (at, answer) = self.plane_joint(joint, joints, state);
-            let [stiffness, damping] = at.tangents(&answer);
-            let block = self.first + joint;
-            if let Some(alone) = &mut alone {
-                carried[0].set_joint(alone, block, &stiffness);
-            }
-            carried[1].set_joint(matrix, block, &stiffness.plus(gamma, &damping));
-        }
-        let last = self.first + self.count - 1;
-        for (carried, matrix) in carried.iter().zip([alone, Some(matrix)]) {
-            if let Some(matrix) = matrix {
-                *matrix.diagonal_mut(last) += carried.0;
-            }
-        }
+        Arch::new().dispatch(AddTangent {
+            law: joints.inner,
+            axial: AxialEffects::new(joints, &state.memory),
+            half: 0.5 * self.pitch,
+            poses: &state.plane,
+            joints: self.first + 1..self.first + self.count,
+            gamma,
+            matrices: (alone, matrix),
+        });
     }
 }
 
@@ -227,6 +180,7 @@ impl Chain {
 /// instructions.
 struct AddTangent<'a, 'm> {
     law: &'a Bushing,
+    axial: Option<AxialEffects<'a>>,
     half: f64,
     poses: &'a PlanePoses,
     /// Matrix blocks of the cylinders behind the joints.
@@ -251,8 +205,12 @@ impl WithSimd for AddTangent<'_, '_> {
         let mut carried = [Carried::default(); 2];
         for k in 0..vectors {
             let joint = PlaneJoint::new(self.half, &behind.get(k), &before.get(k));
-            let answer: LawResponse<Vector<S>, 3> =
+            let mut answer: LawResponse<Vector<S>, 3> =
                 self.law.response(joint.deformation, joint.rate);
+            if let Some(axial) = &self.axial {
+                let range = [1 + k * S::F64_LANES, joints.len()];
+                axial.add_to(simd, range, &joint, &mut answer);
+            }
             let [stiffness, damping] = joint.tangents(&answer);
             let first = joints.start + k * S::F64_LANES;
             let blocks = first..joints.end.min(first + S::F64_LANES);
@@ -288,14 +246,7 @@ impl Carried {
         blocks: Range<usize>,
         tangent: &PlaneTangent<Vector<S>>,
     ) {
-        let mut entries = [[[0.0; WIDEST]; INDEPENDENT]; INDEPENDENT];
-        for (to, from) in entries
-            .as_flattened_mut()
-            .iter_mut()
-            .zip(tangent.0.as_flattened())
-        {
-            S::as_mut_simd_f64s(to).0[0] = from.lanes();
-        }
+        let entries = tangent.0.map(|row| row.map(Vector::to_array));
         for (lane, block) in blocks.enumerate() {
             let mut one = [[0.0; INDEPENDENT]; INDEPENDENT];
             for (to, from) in one
