@@ -174,8 +174,9 @@ fn choose_method(
     if parameter.whole {
         return ColumnMethod::Missing(Unavailable::Integer);
     }
-    // what is beside laws with a past changes what they remember
-    if one.descriptor().generic && !machine.extensions.has_axial() {
+    // in space each perturbed machine has a memory of its own, which changes with every parameter
+    let copied = machine.extensions.has_axial() && machine.layout.motion == Motion::Space;
+    if one.descriptor().generic && !copied {
         let mut unit = one.clone();
         unit.values[k] = 1.0;
         return machine.pieces_of(&*unit.build()).map_or(
@@ -183,9 +184,8 @@ fn choose_method(
             |extensions| ColumnMethod::Pieces(Box::new(extensions)),
         );
     }
-    // in space each perturbed machine has a memory of its own, which changes with every parameter
     let axial = !machine.extensions.has_axial()
-        || machine.layout.motion == Motion::Space
+        || copied
         || machine
             .pieces_of(&*one.build())
             .map_or(true, |own| own.has_axial());

@@ -450,7 +450,8 @@ fn columns_agree_with_differences_on_the_same_steps() {
 }
 
 /// Checks the derivatives of thirty random individuals against differences, with every effect both absent and
-/// at its typical size: `cargo test -p simulation --test numerics -- --ignored --nocapture every_column`.
+/// at its typical size, and every second absent one beside a present hysteresis of the ropes: `cargo test -p
+/// simulation --test numerics -- --ignored --nocapture every_column`.
 #[test]
 #[ignore = "minutes"]
 fn every_column_agrees_with_differences_on_the_same_steps() {
@@ -460,6 +461,9 @@ fn every_column_agrees_with_differences_on_the_same_steps() {
     let seeds: Vec<_> = (0..60).filter(own).take(30).collect();
     println!("individuals {seeds:?}");
     assert!(compare(&fast(), &sizes(1), &mut judged));
+    // beside a law with a memory
+    let (subject, _) = present("rope_hysteresis");
+    assert!(compare(&subject, &sizes(2), &mut judged));
     for descriptor in catalogue().iter().filter(|d| !d.generic) {
         let (subject, mut columns) = present(&descriptor.id);
         columns.extend(BESIDE.map(Column::Coefficient));
