@@ -136,7 +136,8 @@ impl Machine {
                 self.end_forces(k, at, (end.as_ref(), loads), |i, value| force[i] += value);
             }
             if terms.pulls {
-                chain.add_pulls(&self.joints(k, at), &scratch.chains[k], force);
+                let state = &scratch.chains[k];
+                chain.add_pulls(&self.joints(k, at), (state, &state.memory), force);
             }
             if terms.contact[self.strands[k].rope] {
                 let surface = self.surface(k, at.q, at.v, &scratch.deflection);
@@ -156,7 +157,7 @@ impl Machine {
     }
 
     /// Computes into `force` the generalised forces of extensions that belong to an effect but not to this
-    /// machine, using the cylinder poses in `scratch`. Valid for axial laws without memory.
+    /// machine, using the cylinder poses in `scratch`; their axial laws have no memory.
     pub(super) fn forces_of(
         &self,
         extensions: &Extensions,
@@ -176,7 +177,7 @@ impl Machine {
                     axial,
                     ..self.joints(k, at)
                 };
-                chain.add_pulls(&joints, &scratch.chains[k], force);
+                chain.add_pulls(&joints, (&scratch.chains[k], &[]), force);
             }
         }
     }

@@ -96,9 +96,9 @@ pub(super) struct Active<'a> {
     /// empty if the column needs none.
     pub(super) perturbed: Vec<PerturbedModel<'a>>,
     pub(super) difference: Difference,
-    /// Whether the memory of axial laws is differentiated with the state: where the perturbed machines have the same
-    /// laws, and for generic forces, which have no memory. Otherwise each perturbed machine has a memory of its own,
-    /// which follows the perturbed state.
+    /// Whether the memory of axial laws is differentiated with the state: in the plane, where the perturbed machines, if
+    /// there are any, have as many laws as the simulated one. Otherwise each perturbed machine has a memory of its
+    /// own, which follows the perturbed state.
     pub(super) memory_by_state: bool,
     /// Whether the gauge readings depend on the parameter explicitly, at a fixed state.
     explicit: bool,

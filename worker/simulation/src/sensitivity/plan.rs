@@ -174,9 +174,9 @@ fn choose_method(
     if parameter.whole {
         return ColumnMethod::Missing(Unavailable::Integer);
     }
-    // in space each perturbed machine has a memory of its own, which changes with every parameter
-    let copied = machine.extensions.has_axial() && machine.layout.motion == Motion::Space;
-    if one.descriptor().generic && !copied {
+    // axial laws in space: each perturbed machine has a memory of its own, which changes with every parameter
+    let axial_in_space = machine.extensions.has_axial() && machine.layout.motion == Motion::Space;
+    if one.descriptor().generic && !axial_in_space {
         let mut unit = one.clone();
         unit.values[k] = 1.0;
         return machine.pieces_of(&*unit.build()).map_or(
@@ -185,7 +185,7 @@ fn choose_method(
         );
     }
     let axial = !machine.extensions.has_axial()
-        || copied
+        || axial_in_space
         || machine
             .pieces_of(&*one.build())
             .map_or(true, |own| own.has_axial());

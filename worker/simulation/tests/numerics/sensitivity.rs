@@ -298,10 +298,10 @@ fn check_without_curves(
 const ABLE: f64 = 2e-5;
 
 /// Compares computed derivatives with differences of two step sizes; returns whether the run gave derivatives at
-/// all. Where extrapolated and plain differences of a step size agree to [`ABLE`], the derivative must agree with
-/// them to 1e-4, with those of either step size if both do; elsewhere it must agree to 1e-3 with the step size whose
-/// two differences agree better, if a typical change of the unknown moves the curve by more than 0.05. Derivatives
-/// without curves are checked, too.
+/// all. Where extrapolated and plain differences of the smaller step agree to [`ABLE`], or else those of the larger
+/// one, the derivative must agree with them to 1e-4. Where neither do, it must agree to 1e-3 with those that agree
+/// better, if a typical change of the unknown moves the curve by more than 0.05. Derivatives without curves are
+/// checked, too.
 fn compare(subject: &Subject, columns: &[Column], judged: &mut Judged) -> bool {
     let Some((found, steps)) = subject.columns(columns) else {
         return false;
@@ -333,13 +333,15 @@ fn compare(subject: &Subject, columns: &[Column], judged: &mut Judged) -> bool {
                 let best = smooth(best);
                 [distance(&best, &smooth(fine)), distance(&found, &best)]
             });
-            // where contact opens within the larger step, both of its halves can agree on a wrong difference
-            let able = |judge: &[f64; 2]| judge[0] < ABLE;
-            let best = judges.into_iter().min_by(|x, y| match [able(x), able(y)] {
-                [true, true] => x[1].total_cmp(&y[1]),
-                _ => x[0].total_cmp(&y[0]),
-            });
-            let [apart, off] = best.unwrap();
+            // the smaller step first: where contact opens within the larger one, both of its halves can agree on a wrong
+            // difference
+            let [larger, smaller] = judges;
+            let of_both = if larger[0] < smaller[0] {
+                larger
+            } else {
+                smaller
+            };
+            let [apart, off] = if smaller[0] < ABLE { smaller } else { of_both };
             let size = norm(&found) / (found.len() as f64).sqrt() * weight * usual(column);
             println!("{column:?}: {size:.2e} {unit}, off {off:.1e}, judge {apart:.1e}");
             let able = apart < ABLE;
@@ -450,7 +452,7 @@ fn columns_agree_with_differences_on_the_same_steps() {
 }
 
 /// Checks the derivatives of thirty random individuals against differences, with every effect both absent and
-/// at its typical size, and every second absent one beside a present hysteresis of the ropes: `cargo test -p
+/// at its typical size, and with every fifth size beside a present hysteresis of the ropes: `cargo test -p
 /// simulation --test numerics -- --ignored --nocapture every_column`.
 #[test]
 #[ignore = "minutes"]
@@ -463,7 +465,7 @@ fn every_column_agrees_with_differences_on_the_same_steps() {
     assert!(compare(&fast(), &sizes(1), &mut judged));
     // beside a law with a memory
     let (subject, _) = present("rope_hysteresis");
-    assert!(compare(&subject, &sizes(2), &mut judged));
+    assert!(compare(&subject, &sizes(5), &mut judged));
     for descriptor in catalogue().iter().filter(|d| !d.generic) {
         let (subject, mut columns) = present(&descriptor.id);
         columns.extend(BESIDE.map(Column::Coefficient));

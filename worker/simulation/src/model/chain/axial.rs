@@ -30,7 +30,8 @@ impl<'a> AxialEffects<'a> {
         })
     }
 
-    /// Evaluates the laws at a joint between two cylinders with the given extension \[m\] and its rate [m/s].
+    /// Returns the summed force of the laws at a joint between two cylinders with the given extension \[m\] and its rate
+    /// [m/s], with its derivatives and its energy.
     fn force(&self, joint: usize, [extension, rate]: [f64; 2]) -> LineForceValue {
         let first = joint * self.laws.len();
         let own = self.memory.get(first..first + self.laws.len());
@@ -49,8 +50,8 @@ impl<'a> AxialEffects<'a> {
         }
     }
 
-    /// Adds the laws to the answers of the joints' own law in SIMD lanes, of which the first is joint `first` and
-    /// the last at most joint `last`.
+    /// Adds the tension of the laws to the responses of the joints' own law, one joint per SIMD lane. Lane 0 is joint
+    /// `first`; lanes beyond joint `last` are unchanged.
     #[expect(
         clippy::inline_always,
         reason = "compiled for each set of instructions"
@@ -88,18 +89,29 @@ impl<'a> AxialEffects<'a> {
     reason = "one file per term of the equations"
 )]
 impl Chain {
+    /// Returns the axial effect laws of the rope, and extension \[m\] and its rate [m/s] of a joint between two
+    /// cylinders; `None` for an end joint or a rope without such laws.
+    #[inline]
+    fn axial_at<'a>(
+        &self,
+        joint: usize,
+        joints: &Joints<'a>,
+        state: &'a ChainState,
+    ) -> Option<(AxialEffects<'a>, [f64; 2])> {
+        let laws = AxialEffects::new(joints, &state.memory);
+        let laws = laws.filter(|_| joint > 0 && joint < self.count)?;
+        Some((laws, self.extension(joint, joints, state)?))
+    }
+
     /// Evaluates the axial effect laws of the rope at a joint between two cylinders; returns their force with
     /// the joint's extension \[m\] and its rate [m/s]; `None` for an end joint or a rope without such laws.
-    #[inline]
     pub(super) fn axial_effect(
         &self,
         joint: usize,
         joints: &Joints<'_>,
         state: &ChainState,
     ) -> Option<(LineForceValue, [f64; 2])> {
-        let laws = AxialEffects::new(joints, &state.memory);
-        let laws = laws.filter(|_| joint > 0 && joint < self.count)?;
-        let at = self.extension(joint, joints, state)?;
+        let (laws, at) = self.axial_at(joint, joints, state)?;
         Some((laws.force(joint, at), at))
     }
 
@@ -112,14 +124,19 @@ impl Chain {
         joints: &Joints<'_>,
         state: &ChainState,
     ) -> Option<AxialTension> {
-        let laws = AxialEffects::new(joints, &state.memory);
-        let laws = laws.filter(|_| joint > 0 && joint < self.count)?;
-        Some(laws.tension(joint, self.extension(joint, joints, state)?))
+        let (laws, at) = self.axial_at(joint, joints, state)?;
+        Some(laws.tension(joint, at))
     }
 
-    /// Adds the forces of the axial effect laws on the cylinders to `force`, without the joints' own forces.
-    pub(crate) fn add_pulls(&self, joints: &Joints<'_>, state: &ChainState, force: &mut [f64]) {
-        let Some(laws) = AxialEffects::new(joints, &state.memory) else {
+    /// Adds the forces of the axial effect laws on the cylinders to `force`, without the joints' own forces. `memory` is
+    /// that of these laws; empty for laws without memory and before the first step.
+    pub(crate) fn add_pulls(
+        &self,
+        joints: &Joints<'_>,
+        (state, memory): (&ChainState, &[Memory]),
+        force: &mut [f64],
+    ) {
+        let Some(laws) = AxialEffects::new(joints, memory) else {
             return;
         };
         for joint in 1..self.count {

@@ -54,7 +54,7 @@ impl Chain {
     }
 
     /// Returns the markers I and J of a joint and its force law; `None` for a free end. Joints between
-    /// cylinders in the plane use `plane_joint` instead.
+    /// cylinders in the plane have the geometry of `plane_joint` instead.
     pub(super) fn link<'a>(
         &self,
         joint: usize,

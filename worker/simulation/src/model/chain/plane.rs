@@ -57,8 +57,9 @@ impl WithSimd for Evaluate<'_> {
             let joint = PlaneJoint::new(half, &behind.get(k), &before.get(k));
             let mut answer: LawResponse<Vector<S>, 3> = law.response(joint.deformation, joint.rate);
             if let Some(axial) = &axial {
-                let range = [1 + k * S::F64_LANES, loads.count];
-                axial.add_to(simd, range, &joint, &mut answer);
+                // joint 0 holds the chain's base
+                let among = [1 + k * S::F64_LANES, loads.count];
+                axial.add_to(simd, among, &joint, &mut answer);
             }
             let load = joint.load(answer.force);
             x[k] = load.force[0].lanes();
@@ -208,8 +209,8 @@ impl WithSimd for AddTangent<'_, '_> {
             let mut answer: LawResponse<Vector<S>, 3> =
                 self.law.response(joint.deformation, joint.rate);
             if let Some(axial) = &self.axial {
-                let range = [1 + k * S::F64_LANES, joints.len()];
-                axial.add_to(simd, range, &joint, &mut answer);
+                let among = [1 + k * S::F64_LANES, joints.len()];
+                axial.add_to(simd, among, &joint, &mut answer);
             }
             let [stiffness, damping] = joint.tangents(&answer);
             let first = joints.start + k * S::F64_LANES;
