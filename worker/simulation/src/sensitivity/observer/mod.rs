@@ -19,6 +19,7 @@ use crate::observe::{Gradient, TorqueBy};
 use crate::run::{Observe, RunResult, RunSettings};
 use crate::system::{State, System};
 use crate::verdict::Verdict;
+use read::displacing;
 
 /// Simulates one individual and differentiates the run. Verdict, samples and counters are those of
 /// [`run::simulate`](crate::run::simulate), bit for bit. A failed run has no derivatives.
@@ -197,11 +198,18 @@ impl Observe for SensitivityObserver<'_, '_> {
                     add_scaled(sum, share, curve);
                 }
             };
+            // amplitudes of generic forces have no machines by whose step the readings would differ
+            let displaced = active.perturbed.is_empty().then(|| {
+                let by = active.curves.gauge.iter().flatten();
+                displacing(self.readings.iter().flatten(), by)
+            });
             let Difference {
                 steps,
                 weights,
                 own,
-            } = active.difference;
+            } = displaced
+                .flatten()
+                .map_or(active.difference, Difference::central);
             if own != 0.0 {
                 add_series(&self.own, 0.0, own);
             }

@@ -104,6 +104,17 @@ impl SensitivityObserver<'_, '_> {
 /// Share of the stress by which it is displaced for the derivative of the measuring chain.
 const DISPLACED: f64 = 1e-3;
 
+/// Returns the difference step that displaces stresses along their derivatives by [`DISPLACED`] of the largest stress;
+/// `None` where all derivatives are zero.
+pub(super) fn displacing<'x>(
+    stress: impl Iterator<Item = &'x f64>,
+    by: impl Iterator<Item = &'x f64>,
+) -> Option<f64> {
+    let size = by.fold(0.0_f64, |largest, x| largest.max(x.abs()));
+    let stress = stress.fold(1.0_f64, |largest, x| largest.max(x.abs()));
+    (size > 0.0).then(|| DISPLACED * stress / size)
+}
+
 /// Measuring chain of a machine at one sample, from stress at the gauges to readings.
 struct MeasuringChain<'a> {
     extensions: &'a Extensions,
@@ -130,12 +141,9 @@ impl<'a> MeasuringChain<'a> {
 
     /// Returns the derivatives of the readings from those of the stress, by central differences.
     fn derivative(&self, stress: [f64; 4], by: [f64; 4]) -> [f64; 4] {
-        let largest = |x: &[f64; 4]| x.iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));
-        let size = largest(&by);
-        if self.at.is_none() || size == 0.0 {
+        let Some(step) = displacing(stress.iter(), by.iter()).filter(|_| self.at.is_some()) else {
             return by;
-        }
-        let step = DISPLACED * largest(&stress).max(1.0) / size;
+        };
         let [more, less] = [step, -step].map(|step| {
             let mut moved = stress;
             add_scaled(&mut moved, step, &by);
