@@ -72,6 +72,9 @@ struct SensitivityObserver<'a, 'o> {
     blocks: Vec<Block>,
     /// Derivatives of the memory of axial laws, one element per block.
     memories: Vec<MemoryColumns>,
+    /// Whether the memory of axial laws is still that of the start of the last step, at which the samples within the
+    /// step are read.
+    memory_behind: bool,
     /// Buffers of the sensitivity analysis; `None` until the run starts.
     room: Option<Workspace>,
     /// Reason why the derivatives could not be propagated to the end; `None` while they can.
@@ -120,6 +123,7 @@ impl<'a, 'o> SensitivityObserver<'a, 'o> {
             observer,
             blocks: Vec::new(),
             memories: Vec::new(),
+            memory_behind: false,
             room: None,
             missing,
             ends: std::array::from_fn(|_| State::at_rest(0.0, Vec::new())),

@@ -132,6 +132,9 @@ impl SensitivityObserver<'_, '_> {
     ) -> Result<(), Unavailable> {
         let h = ends[1].t - ends[0].t;
         let kept = self.room.as_ref().map_or(1, |room| room.stages.len());
+        if self.memory_behind {
+            self.remember(ends[0], kept - 1);
+        }
         let mut after = 1..stages.tableau.stages();
         while !after.is_empty() && !self.blocks.is_empty() {
             let first = after.start;
@@ -165,7 +168,7 @@ impl SensitivityObserver<'_, '_> {
         for (end, now) in self.ends.iter_mut().zip(ends) {
             end.clone_from(now);
         }
-        self.remember(ends[1], kept - 1);
+        self.memory_behind = true;
         Ok(())
     }
 
