@@ -12,6 +12,9 @@ pub(super) const TOUCHING: f64 = 1e-6;
 /// reverses, and strains are rounded at 1e-15.
 pub(super) const HYSTERETIC_STEP: f64 = 1e-7;
 
+/// Share of the largest stress by which the difference of a measuring chain displaces it.
+const DISPLACED: f64 = 1e-3;
+
 /// Finite-difference formula: steps and weights of two neighbouring values and of the central one. Values of
 /// zero weight are not evaluated.
 #[derive(Clone, Copy, Debug)]
@@ -32,6 +35,17 @@ impl Difference {
             weights: [0.5 / step, -0.5 / step],
             own: 0.0,
         }
+    }
+
+    /// Returns the central difference that displaces stresses \[Pa\] along their derivatives by [`DISPLACED`] of the
+    /// largest one; `None` where all derivatives are zero.
+    pub(super) fn displacing<'x>(
+        stress: impl Iterator<Item = &'x f64>,
+        by: impl Iterator<Item = &'x f64>,
+    ) -> Option<Self> {
+        let size = by.fold(0.0_f64, |largest, x| largest.max(x.abs()));
+        let stress = stress.fold(1.0_f64, |largest, x| largest.max(x.abs()));
+        (size > 0.0).then(|| Self::central(DISPLACED * stress / size))
     }
 
     /// Returns the second-order one-sided difference with one and two times the given step, of either sign.

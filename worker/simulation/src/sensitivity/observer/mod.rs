@@ -19,7 +19,6 @@ use crate::observe::{Gradient, TorqueBy};
 use crate::run::{Observe, RunResult, RunSettings};
 use crate::system::{State, System};
 use crate::verdict::Verdict;
-use read::displacing;
 
 /// Simulates one individual and differentiates the run. Verdict, samples and counters are those of
 /// [`run::simulate`](crate::run::simulate), bit for bit. A failed run has no derivatives.
@@ -205,15 +204,13 @@ impl Observe for SensitivityObserver<'_, '_> {
             // amplitudes of generic forces have no machines by whose step the readings would differ
             let displaced = active.perturbed.is_empty().then(|| {
                 let by = active.curves.gauge.iter().flatten();
-                displacing(self.readings.iter().flatten(), by)
+                Difference::displacing(self.readings.iter().flatten(), by)
             });
             let Difference {
                 steps,
                 weights,
                 own,
-            } = displaced
-                .flatten()
-                .map_or(active.difference, Difference::central);
+            } = displaced.flatten().unwrap_or(active.difference);
             if own != 0.0 {
                 add_series(&self.own, 0.0, own);
             }

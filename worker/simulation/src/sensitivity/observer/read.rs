@@ -2,6 +2,7 @@
 use super::super::active::{Active, Sample};
 use super::super::between::{add_column, shaft, stress};
 use super::super::block::Motion;
+use super::super::differences::Difference;
 use super::super::perturbed::PerturbedModel;
 use super::{SensitivityObserver, Workspace};
 use crate::integrator::dense::Weights;
@@ -101,20 +102,6 @@ impl SensitivityObserver<'_, '_> {
     }
 }
 
-/// Share of the stress by which it is displaced for the derivative of the measuring chain.
-const DISPLACED: f64 = 1e-3;
-
-/// Returns the difference step that displaces stresses along their derivatives by [`DISPLACED`] of the largest stress;
-/// `None` where all derivatives are zero.
-pub(super) fn displacing<'x>(
-    stress: impl Iterator<Item = &'x f64>,
-    by: impl Iterator<Item = &'x f64>,
-) -> Option<f64> {
-    let size = by.fold(0.0_f64, |largest, x| largest.max(x.abs()));
-    let stress = stress.fold(1.0_f64, |largest, x| largest.max(x.abs()));
-    (size > 0.0).then(|| DISPLACED * stress / size)
-}
-
 /// Measuring chain of a machine at one sample, from stress at the gauges to readings.
 struct MeasuringChain<'a> {
     extensions: &'a Extensions,
@@ -141,15 +128,16 @@ impl<'a> MeasuringChain<'a> {
 
     /// Returns the derivatives of the readings from those of the stress, by central differences.
     fn derivative(&self, stress: [f64; 4], by: [f64; 4]) -> [f64; 4] {
-        let Some(step) = displacing(stress.iter(), by.iter()).filter(|_| self.at.is_some()) else {
+        let difference = Difference::displacing(stress.iter(), by.iter());
+        let Some(difference) = difference.filter(|_| self.at.is_some()) else {
             return by;
         };
-        let [more, less] = [step, -step].map(|step| {
+        let [more, less] = difference.steps.map(|step| {
             let mut moved = stress;
             add_scaled(&mut moved, step, &by);
             self.read(moved)
         });
-        std::array::from_fn(|k| (more[k] - less[k]) * (0.5 / step))
+        std::array::from_fn(|k| (more[k] - less[k]) * difference.weights[0])
     }
 }
 
