@@ -226,6 +226,16 @@ impl AssessmentTarget {
             )
         }));
         compared.extend(with_and_without(&case, "diagnosed", &start.genes));
+        // as the diagnosis simulated them: its answer may need more iterations than the case's budget has
+        let thresholds = &run.manifest.settings.thresholds;
+        let (numerics, _) = case::kind::of(&case).diagnosis_numerics(
+            &case,
+            thresholds.step,
+            thresholds.refinement,
+        )?;
+        for own in &mut compared {
+            own.numerics = numerics.clone();
+        }
         // individuals of the fit state what was added as effects; genes of the case have it as unknowns
         let neighbourhood = diagnosis.neighbourhood.map(|mut own| {
             for individual in own.iter_mut().flat_map(|own| &mut own.individuals) {
@@ -427,11 +437,14 @@ pub async fn simulate_machines<E: Evaluator>(
             return Ok(simulated);
         }
     };
+    let numerics = target.assessed().map(|own| own.numerics.clone());
+    let numerics = numerics.unwrap_or_default();
     let individuals = (1..).zip(&neighbourhood.individuals);
     let individuals = individuals.map(|(number, own)| NamedIndividual {
         name: format!("neighbour {number}"),
         genes: own.genes.clone(),
         effects: own.effects.clone(),
+        numerics: numerics.clone(),
     });
     let individuals = (position, individuals.collect());
     let mut about = simulate(evaluator, &target.case, wanted, individuals, stop).await?;

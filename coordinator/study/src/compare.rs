@@ -7,7 +7,7 @@ use journal::event::JobReason;
 use protocol::{
     case::{Case, EffectSetting},
     id::JobId,
-    job::{self, Column, Evaluation, Individual, Job, Reply, SimulateSpec},
+    job::{self, Column, Evaluation, Individual, Job, Numerics, Reply, SimulateSpec},
 };
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -38,6 +38,9 @@ pub struct NamedIndividual {
     /// Effects beside or in place of those of the case.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub effects: Vec<EffectSetting>,
+    /// Numerical settings in place of those of the case.
+    #[serde(default)]
+    pub numerics: Numerics,
 }
 
 impl NamedIndividual {
@@ -47,6 +50,7 @@ impl NamedIndividual {
             name: name.into(),
             genes,
             effects: Vec::new(),
+            numerics: Numerics::FROM_CASE,
         }
     }
 
@@ -114,7 +118,10 @@ pub async fn compare<E: Evaluator>(
                     with_residual: false,
                     whole: false,
                 };
-                let spec = SimulateSpec::new(own.under(one.condition), reply);
+                let spec = SimulateSpec {
+                    numerics: own.numerics.clone(),
+                    ..SimulateSpec::new(own.under(one.condition), reply)
+                };
                 jobs.push((JobId(first), Job::Simulate(spec)));
                 places.push((group, position));
             }
@@ -123,6 +130,7 @@ pub async fn compare<E: Evaluator>(
             };
             let spec = SimulateSpec {
                 columns: one.columns.clone(),
+                numerics: own.numerics.clone(),
                 ..SimulateSpec::new(own.under(one.condition), reply)
             };
             jobs.push((JobId(first + 1), Job::Simulate(spec)));
