@@ -142,14 +142,11 @@ fn a_strong_friction_is_named_added_told_again_and_simulated_with_the_same_numbe
 
     friction_costs_its_work(&trial, &whole);
 
-    // with step and iteration budget of the diagnosis, and the instruments off by what it says, a simulation of the case is
+    // with the step of the diagnosis, and the instruments off by what it says, a simulation of the case is
     // its "after": rounded as channels of a diagnosis are
     let usual = "longest_step_s = 0.06 ";
     assert_eq!(case.matches(usual).count(), 1);
-    let finer = format!(
-        "iteration_budget = 100_000\nlongest_step_s = {:e} ",
-        0.7 * 0.06
-    );
+    let finer = format!("longest_step_s = {:e} ", 0.7 * 0.06);
     let case = case.replace(usual, &finer) + &instruments(&whole);
     fs::write(trial.at("case/case.toml"), case).expect("a case");
     let mut simulate = trial.horsehead(&["simulate", "case", "--output", "json", "--measured"]);
