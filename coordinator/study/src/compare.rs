@@ -113,16 +113,16 @@ pub async fn compare<E: Evaluator>(
         let recorded = case.is_measured(one.condition);
         for (position, own) in one.individuals.iter().enumerate() {
             let first = of_comparison(one.condition, one.first + position);
+            let spec = |reply| SimulateSpec {
+                numerics: own.numerics.clone(),
+                ..SimulateSpec::new(own.under(one.condition), reply)
+            };
             if recorded {
                 let reply = Reply::Score {
                     with_residual: false,
                     whole: false,
                 };
-                let spec = SimulateSpec {
-                    numerics: own.numerics.clone(),
-                    ..SimulateSpec::new(own.under(one.condition), reply)
-                };
-                jobs.push((JobId(first), Job::Simulate(spec)));
+                jobs.push((JobId(first), Job::Simulate(spec(reply))));
                 places.push((group, position));
             }
             let reply = Reply::Curves {
@@ -130,8 +130,7 @@ pub async fn compare<E: Evaluator>(
             };
             let spec = SimulateSpec {
                 columns: one.columns.clone(),
-                numerics: own.numerics.clone(),
-                ..SimulateSpec::new(own.under(one.condition), reply)
+                ..spec(reply)
             };
             jobs.push((JobId(first + 1), Job::Simulate(spec)));
             places.push((group, position));
