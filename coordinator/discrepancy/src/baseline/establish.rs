@@ -100,7 +100,7 @@ pub(crate) async fn establish<L: Laboratory>(
             on: &on,
             stage: Stage::Recalibrate,
         };
-        match recalibrate::converge(&mut last, second.point()).await? {
+        match recalibrate::converge_for_tests(&mut last, second.point()).await? {
             Some(fit) => (on, fit),
             None => return Ok(Err(BaselineError::NothingCompletes)),
         }
@@ -206,6 +206,7 @@ async fn constrain_instruments<L: Laboratory>(
     if beyond.is_empty() {
         return Ok((fit, beyond));
     }
-    let held = recalibrate::converge(experiments, fit.point().with_held_instruments()).await?;
+    let held = fit.point().with_held_instruments();
+    let held = recalibrate::converge_for_tests(experiments, held).await?;
     Ok((held.unwrap_or(fit), beyond))
 }

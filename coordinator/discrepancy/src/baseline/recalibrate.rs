@@ -31,11 +31,33 @@ pub async fn converge<L: Laboratory>(
     experiments: &mut Experiments<'_, L>,
     start: Point,
 ) -> Result<Option<Fit>, L::Error> {
+    experiments.fit(start, converging()).await
+}
+
+/// Fits all unknowns from one start as [`converge`] does, but until the gradient is a tenth of what suffices there.
+/// Tests of effects look at what such a fit leaves: an unknown on its way to a bound leaves a part that an effect
+/// may explain. On practice set 1, in which no effect is hidden, a saddle friction that had not reached its bound of
+/// zero left a family-wise p-value of 7e-4; 0.15 with a tenth of the gradient, after 32 more simulations.
+///
+/// # Errors
+/// Returns an error if no worker is left to simulate, or the user stops the run.
+pub(crate) async fn converge_for_tests<L: Laboratory>(
+    experiments: &mut Experiments<'_, L>,
+    start: Point,
+) -> Result<Option<Fit>, L::Error> {
     let settings = LeastSquaresSettings {
+        gradient: 1e-3,
+        decrease: 3e-5,
+        ..converging()
+    };
+    experiments.fit(start, settings).await
+}
+
+fn converging() -> LeastSquaresSettings {
+    LeastSquaresSettings {
         iterations: 10,
         decrease: 3e-4,
         central: true,
         ..LeastSquaresSettings::default()
-    };
-    experiments.fit(start, settings).await
+    }
 }
