@@ -144,7 +144,7 @@ fn every_effect_at_its_typical_size_acts() {
 fn bounds_end_in_a_verdict() {
     let settings = RunSettings {
         samples: SAMPLES,
-        budget: 15_000,
+        budget: 6000,
         // coarse steps will do for a verdict
         slow_swing: f64::INFINITY,
         ..RunSettings::default()
