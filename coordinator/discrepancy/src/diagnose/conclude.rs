@@ -4,7 +4,6 @@
 //! effects found are withdrawn from the answer. They remain visible as suspects with size and evidence in
 //! nats, and the reason states what is needed to name them. Effects with implausible sizes are treated
 //! likewise.
-use crate::baseline::base::Baseline;
 use crate::baseline::session::Session;
 use crate::diagnose::claim::{claim, no_answer};
 use crate::diagnose::diagnosis::WorkingDiagnosis;
@@ -162,7 +161,7 @@ async fn settled<L: Laboratory>(
     for starts in Starts::ALL {
         let holds = doubt.is_none()
             && diagnosis.remainder.beyond.is_empty()
-            && implausible(base, &answer, diagnosis).is_none();
+            && implausible(session, &answer, diagnosis).is_none();
         if !firm || holds {
             break;
         }
@@ -182,7 +181,7 @@ async fn settled<L: Laboratory>(
         doubt = validate(session, &mut answer, shown, diagnosis).await?;
     }
     let of_force = doubt_of_force(session, &answer, shown, diagnosis).await?;
-    let doubt = doubt.or_else(|| implausible(base, &answer, diagnosis));
+    let doubt = doubt.or_else(|| implausible(session, &answer, diagnosis));
     // a force beside effects that are not named has no size of its own
     let beside = doubt.is_some() && !answer.model.added.is_empty();
     let mut suspects = Vec::new();
@@ -235,12 +234,21 @@ fn ground<L>(session: &Session<'_, L>, claims: bool, diagnosis: &WorkingDiagnosi
 
 /// Returns the reason why the sizes or the ambiguity sets of an answer are none that can be named, if there is
 /// one.
-fn implausible(base: &Baseline, answer: &Fit, diagnosis: &WorkingDiagnosis) -> Option<String> {
+fn implausible<L>(
+    session: &Session<'_, L>,
+    answer: &Fit,
+    diagnosis: &WorkingDiagnosis,
+) -> Option<String> {
+    let base = session.base;
     let sets = || {
         let mut rounds = diagnosis.rounds.iter();
         rounds.find_map(|round| no_answer(base, round))
     };
-    let doubt = plausibility::doubt(&claim(answer, &diagnosis.effects));
+    // the gain of a single effect, as far as it holds if what is left is coloured
+    let growth = Spread::of(&base.record.metric, answer).largest_growth();
+    let gain = answer.gain_over(&base.fit) / growth.map_or(1.0, |growth| growth * growth);
+    let is_needed = answer.model.added.len() == 1 && gain >= session.inputs.thresholds.gain;
+    let doubt = plausibility::doubt(&claim(answer, &diagnosis.effects), is_needed);
     doubt.map(|doubt| doubt.reason).or_else(sets)
 }
 

@@ -30,8 +30,13 @@ impl Size {
     pub(crate) fn may_be_nothing(&self) -> bool {
         let [low, high] = self.interval;
         let holds = low <= self.absent && self.absent <= high;
+        holds || self.is_within_tolerance()
+    }
+
+    /// Returns whether the size is within the tolerance of an instrument.
+    fn is_within_tolerance(&self) -> bool {
         let usual = |sd: f64| (self.value - self.absent).abs() <= WITHIN * sd;
-        holds || self.tolerance.is_some_and(usual)
+        self.tolerance.is_some_and(usual)
     }
 
     /// Returns whether the value lies at a bound other than its absent value.
@@ -61,22 +66,33 @@ pub(crate) struct Doubt {
 }
 
 /// Returns the first reason against naming effects of these sizes, if there is one.
-pub(crate) fn doubt(sizes: &[Size]) -> Option<Doubt> {
+///
+/// An effect of several sizes vanishes only where all of them do, and each may stand for the others: its intervals
+/// then speak for nothing if the evidence excludes the model without the effect (`is_needed`).
+pub(crate) fn doubt(sizes: &[Size], is_needed: bool) -> Option<Doubt> {
     sizes.iter().find_map(|size| {
         Some(Doubt {
             effect: size.effect.clone(),
-            reason: doubt_of(size, sizes)?,
+            reason: doubt_of(size, sizes, is_needed)?,
         })
     })
 }
 
 /// Returns the reason against one of several sizes, if there is one.
-fn doubt_of(size: &Size, sizes: &[Size]) -> Option<String> {
+fn doubt_of(size: &Size, sizes: &[Size], is_needed: bool) -> Option<String> {
     let Size {
         effect, parameter, ..
     } = size;
-    let mut own = sizes.iter().filter(|other| other.effect == *effect);
-    if own.all(Size::may_be_nothing) {
+    let own = sizes.iter().filter(|other| other.effect == *effect);
+    let together = is_needed && own.clone().count() > 1;
+    let is_nothing = |own: &Size| {
+        if together {
+            own.is_within_tolerance()
+        } else {
+            own.may_be_nothing()
+        }
+    };
+    if own.clone().all(is_nothing) {
         let [low, high] = size.interval;
         return Some(match size.tolerance {
             Some(sd) if !(low..=high).contains(&size.absent) => format!(
@@ -118,7 +134,7 @@ mod tests {
 
     #[test]
     fn a_size_that_may_be_nothing_names_nothing() {
-        let said = |sizes: &[Size]| doubt(sizes).map(|doubt| doubt.reason);
+        let said = |sizes: &[Size]| doubt(sizes, false).map(|doubt| doubt.reason);
         assert_eq!(said(&[size(0.3, [0.2, 0.4])]), None);
         let nothing = size(0.1, [-0.1, 0.3]);
         assert!(
@@ -137,7 +153,15 @@ mod tests {
                 .unwrap()
                 .starts_with("slip")
         );
-        assert_eq!(doubt(&[other, nothing]).unwrap().effect, "slip");
+        assert_eq!(
+            doubt(&[other, nothing.clone()], false).unwrap().effect,
+            "slip"
+        );
+        // two sizes that stand for each other are something where the evidence says so
+        let both = [nothing.clone(), nothing];
+        assert!(doubt(&both, false).is_some());
+        assert_eq!(doubt(&both, true), None);
+        assert!(doubt(&both[..1], true).is_some());
     }
 
     #[test]
@@ -147,18 +171,18 @@ mod tests {
             ..size(value, [value - 0.01, value + 0.01])
         };
         assert!(
-            doubt(&[toleranced(0.29)])
+            doubt(&[toleranced(0.29)], true)
                 .unwrap()
                 .reason
                 .contains("tolerance")
         );
-        assert_eq!(doubt(&[toleranced(-0.31)]), None);
+        assert_eq!(doubt(&[toleranced(-0.31)], false), None);
     }
 
     #[test]
     fn bounds_and_open_intervals_carry_nothing() {
         assert!(
-            doubt(&[size(0.9999, [0.5, 1.0])])
+            doubt(&[size(0.9999, [0.5, 1.0])], false)
                 .unwrap()
                 .reason
                 .contains("bound")
@@ -167,6 +191,11 @@ mod tests {
             absent: -2.0,
             ..size(0.5, [-1.0, 1.0])
         };
-        assert!(doubt(&[wide]).unwrap().reason.contains("whole range"));
+        assert!(
+            doubt(&[wide], false)
+                .unwrap()
+                .reason
+                .contains("whole range")
+        );
     }
 }

@@ -142,7 +142,7 @@ pub(crate) async fn drop_implausible<L: Laboratory>(
     diagnosis: &mut WorkingDiagnosis,
 ) -> Result<Option<Fit>, L::Error> {
     let added = &answer.model.added;
-    let Some(doubt) = plausibility::doubt(&claim(answer, &diagnosis.effects)) else {
+    let Some(doubt) = plausibility::doubt(&claim(answer, &diagnosis.effects), false) else {
         return Ok(None);
     };
     let position = added.iter().position(|own| own.id == doubt.effect);
