@@ -36,8 +36,9 @@ pub async fn converge<L: Laboratory>(
 
 /// Fits all unknowns from one start as [`converge`] does, but until the gradient is a tenth of what suffices there.
 /// Tests of effects look at what such a fit leaves: an unknown on its way to a bound leaves a part that an effect
-/// may explain. On practice set 1, in which no effect is hidden, a saddle friction that had not reached its bound of
-/// zero left a family-wise p-value of 7e-4; 0.15 with a tenth of the gradient, after 32 more simulations.
+/// may explain. On practice set 1, in which no effect is hidden, the family-wise p-value was 7e-4 before and 0.15
+/// with a tenth of the gradient, after 32 more simulations; but 6e-4 in a later program whose fit ended with the
+/// saddle friction inside its bounds (docs/verdicts.md).
 ///
 /// # Errors
 /// Returns an error if no worker is left to simulate, or the user stops the run.
