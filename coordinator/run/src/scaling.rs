@@ -289,12 +289,13 @@ impl ScalingRun<'_> {
             seed: self.run.manifest.seed,
             evaluations: Some(self.run.manifest.settings.evaluations),
         }];
-        let (before, begun, processor) =
-            (evaluator.snapshot().spent, Instant::now(), processor_time());
+        let before = evaluator.current_snapshot().await?.spent;
+        let (begun, processor) = (Instant::now(), processor_time());
         let mut sweep = Sweep::new(&self.run.case, self.space);
         let found = sweep.run(evaluator, &list, watch, stop).await?;
-        let (wall, after) = (begun.elapsed(), evaluator.snapshot().spent);
+        let wall = begun.elapsed();
         let processor = processor_time().saturating_sub(processor);
+        let after = evaluator.current_snapshot().await?.spent;
         let evaluations = found.first().map_or(0, |found| found.evaluations);
         let (preset, population) = search;
         Ok(ScalingRow {

@@ -277,4 +277,8 @@ impl Evaluator for NumberedSearch<'_> {
     fn snapshot(&self) -> Snapshot {
         self.dispatch.snapshot()
     }
+
+    async fn current_snapshot(&self) -> Result<Snapshot, EvaluatorError> {
+        Ok(self.dispatch.current_snapshot().await?)
+    }
 }

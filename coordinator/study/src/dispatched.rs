@@ -46,6 +46,10 @@ impl Evaluator for Dispatch {
     fn snapshot(&self) -> Snapshot {
         Self::snapshot(self)
     }
+
+    async fn current_snapshot(&self) -> Result<Snapshot, EvaluatorError> {
+        Ok(Self::current_snapshot(self).await?)
+    }
 }
 
 impl From<DispatchError> for EvaluatorError {

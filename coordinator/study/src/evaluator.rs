@@ -55,8 +55,17 @@ pub trait Evaluator {
         Ok(JobNumbers::default())
     }
 
-    /// Returns the present state of the workers and their jobs.
+    /// Returns a recent state of the workers and their jobs.
     fn snapshot(&self) -> Snapshot;
+
+    /// Returns the state of the workers and their jobs after every result that [`Self::next`] has returned. The
+    /// default is a recent state.
+    ///
+    /// # Errors
+    /// If no further result can come.
+    fn current_snapshot(&self) -> impl Future<Output = Result<Snapshot, EvaluatorError>> {
+        std::future::ready(Ok(self.snapshot()))
+    }
 }
 
 /// Extracts the expected kind of answer from a completed job by `take`; `what` names the job's purpose in an

@@ -29,7 +29,10 @@ use std::{
 };
 use tempfile::TempDir;
 use tokio::{
-    sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel},
+    sync::{
+        mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel},
+        oneshot,
+    },
     task::JoinHandle,
 };
 
@@ -269,6 +272,18 @@ impl Dispatch {
             .lock()
             .unwrap_or_else(PoisonError::into_inner)
             .clone()
+    }
+
+    /// Returns the state of the run as of now, after every result that [`Self::next`] has returned. Slower than
+    /// [`Self::snapshot`].
+    ///
+    /// # Errors
+    /// [`DispatchError::Closed`] once the run has been stopped.
+    pub async fn current_snapshot(&self) -> Result<Snapshot, DispatchError> {
+        let (to, snapshot) = oneshot::channel();
+        let asked = self.requests.send(Request::Snapshot(to));
+        asked.map_err(|_| DispatchError::Closed)?;
+        snapshot.await.map_err(|_| DispatchError::Closed)
     }
 
     /// Returns whether some slot had no job when the last snapshot was taken, or computed a job ahead.

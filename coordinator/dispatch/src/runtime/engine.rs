@@ -30,7 +30,10 @@ use std::{
     time::{Duration, Instant},
 };
 use tokio::{
-    sync::mpsc::{UnboundedReceiver, UnboundedSender},
+    sync::{
+        mpsc::{UnboundedReceiver, UnboundedSender},
+        oneshot,
+    },
     time::{MissedTickBehavior, interval, timeout},
 };
 
@@ -53,6 +56,8 @@ pub(super) enum Request {
     Anticipate(Vec<Job>),
     /// Writes an event of the study to the journal.
     Record(Event),
+    /// Asks for the state of the run as of now.
+    Snapshot(oneshot::Sender<Snapshot>),
     /// Request that arrived on the control socket.
     Control(PendingRequest),
 }
@@ -152,6 +157,11 @@ impl<L: CoordinatorEnd> Engine<L> {
                     Some(Request::Submit(jobs)) => self.submit(jobs),
                     Some(Request::Anticipate(jobs)) => self.anticipate(jobs),
                     Some(Request::Record(event)) => self.record(event),
+                    Some(Request::Snapshot(to)) => {
+                        let now = self.begun.elapsed();
+                        // who asked may not wait any more
+                        drop(to.send(self.coordination.core().snapshot(now)));
+                    }
                     Some(Request::Control((question, to))) => {
                         let reply = self.ask(&question);
                         // who asked may not wait any more
