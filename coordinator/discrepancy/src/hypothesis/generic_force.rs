@@ -10,12 +10,12 @@ use crate::hypothesis::candidate::{WorkingCandidate, joined};
 use crate::hypothesis::round::WorkingRound;
 use crate::laboratory::{Laboratory, Stage};
 use crate::linear::isolability::similarity;
-use crate::linear::score::{chi_squared_tail, family_wise, score};
+use crate::linear::score::{NullModel, chi_squared_tail, family_wise, score};
 use crate::linear::tangent::Tangent;
 use crate::model::fit::Fit;
 use crate::model::probe::harmonic;
 use crate::model::unknowns::Point;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 use search::least_squares::LeastSquaresSettings;
 
 /// Generic force under test: a single form, or both phases of a harmonic.
@@ -74,15 +74,14 @@ pub(crate) async fn challenge<L: Laboratory>(
     let best_name = best.map(|best| &best.fit);
     // by how much the best name lowers the misfit
     let named = best_name.map_or(0.0, |best| current.chi_squared() - best.chi_squared());
-    let tangent = current.tangent();
-    let residual = &current.search.linear_minimum_residual();
-    let mut forms = forms(&round.generics, residual, &tangent);
+    let null = current.null_model();
+    let mut forms = forms(&round.generics, &null);
     let tests = forms.len();
     let needed = thresholds.evidence_of_best(tests, 1);
     forms.retain(|form| {
         family_wise(form.p_value, tests) < thresholds.alpha
             && form.statistic > named
-            && !is_listed(form, &round.candidates, thresholds.alike, &tangent)
+            && !is_listed(form, &round.candidates, thresholds.alike, &null.tangent)
     });
     forms.sort_by(|a, b| b.merit().total_cmp(&a.merit()));
     forms.truncate(TRIED);
@@ -132,8 +131,7 @@ pub(crate) async fn in_place<L: Laboratory>(
         return Ok(None);
     };
     let reduction = without.chi_squared() - answer.chi_squared();
-    let residual = &without.search.linear_minimum_residual();
-    let mut forms = forms(&round.generics, residual, &without.tangent());
+    let mut forms = forms(&round.generics, &without.null_model());
     let tests = forms.len();
     let needed = thresholds.evidence_of_best(tests, 1);
     forms.retain(|form| {
@@ -157,18 +155,14 @@ pub(crate) async fn in_place<L: Laboratory>(
 }
 
 /// Returns all generic forces, with the two phases of a harmonic combined into one form.
-fn forms<'a>(
-    generics: &'a [WorkingCandidate],
-    residual: &DVector<f64>,
-    tangent: &Tangent,
-) -> Vec<Form<'a>> {
+fn forms<'a>(generics: &'a [WorkingCandidate], null: &NullModel) -> Vec<Form<'a>> {
     let form = |mut parts: Vec<&'a WorkingCandidate>| {
         parts.sort_by(|a, b| b.statistic().total_cmp(&a.statistic()));
         if parts.iter().all(|part| part.signature.ncols() == 0) {
             return None;
         }
         let signature = joined(&parts);
-        let statistic = score(residual, &signature, &[], tangent).statistic;
+        let statistic = score(null, &signature, &[]).statistic;
         Some(Form {
             p_value: chi_squared_tail(statistic, signature.ncols()),
             parts,

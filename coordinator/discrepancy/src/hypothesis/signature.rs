@@ -10,7 +10,7 @@
 //! its whole range. Each rung counts as a try and is a possible start of a refit.
 use crate::hypothesis::candidate::WorkingCandidate;
 use crate::laboratory::Laboratory;
-use crate::linear::score::{Score, score};
+use crate::linear::score::{NullModel, Score, score};
 use crate::linear::tangent::Tangent;
 use crate::model::derivative::candidate_term;
 use crate::model::experiments::Experiments;
@@ -79,26 +79,26 @@ pub async fn examine<L: Laboratory>(
     fit: &Fit,
     effects: &[EffectDescriptor],
 ) -> Result<Vec<WorkingCandidate>, L::Error> {
-    let tangent = fit.tangent();
+    let null = fit.null_model();
+    let tangent = &null.tangent;
     let mut probes = plan(effects);
     differentiate(experiments, fit, effects, &mut probes).await?;
-    suggest(effects, &mut probes, &tangent);
+    suggest(effects, &mut probes, tangent);
     // what a size does in the effect's typical shape tells how much of it to take in the others
     take(experiments, fit, effects, &mut probes, |probe| {
         probe.typical
     })
     .await?;
-    settle(&mut probes, &tangent);
-    adjust(effects, &mut probes, &tangent);
+    settle(&mut probes, tangent);
+    adjust(effects, &mut probes, tangent);
     spread(&mut probes);
     take(experiments, fit, effects, &mut probes, |_| true).await?;
-    adjust(effects, &mut probes, &tangent);
+    adjust(effects, &mut probes, tangent);
     take(experiments, fit, effects, &mut probes, |_| true).await?;
     climb(experiments, fit, effects, &mut probes).await?;
-    let residual = &fit.search.linear_minimum_residual();
     let judged = effects.iter().enumerate();
     Ok(judged
-        .map(|(k, effect)| judge(k, effect, &probes, residual, &tangent))
+        .map(|(k, effect)| judge(k, effect, &probes, &null))
         .collect())
 }
 
@@ -347,9 +347,9 @@ fn judge(
     k: usize,
     effect: &EffectDescriptor,
     probes: &[Probe],
-    residual: &DVector<f64>,
-    tangent: &Tangent,
+    null: &NullModel,
 ) -> WorkingCandidate {
+    let (residual, tangent) = (null.residual(), &null.tangent);
     let positive = positive(effect);
     let own: Vec<&Probe> = probes.iter().filter(|p| p.effect == k).collect();
     let mut best: Option<(Score, &[&Probe], DMatrix<f64>)> = None;
@@ -377,7 +377,7 @@ fn judge(
             // what recalibration explains of it tells nothing about the size
             rungs.push((tangent.project(&(residual - change)).norm_squared(), start));
         }
-        let found = score(residual, &signature, &positive, tangent);
+        let found = score(null, &signature, &positive);
         let better = best.as_ref().is_none_or(|(other, ..)| {
             found.p_value < other.p_value
                 || (found.p_value <= other.p_value && found.statistic > other.statistic)
@@ -458,11 +458,10 @@ mod tests {
         };
         let at = Linearized {
             x: vec![0.0],
-            residual: DVector::zeros(3),
+            residual: vector([0.0, 6.0, 0.0]),
             jacobian: DMatrix::from_columns(&[vector([1.0, 0.0, 0.0])]),
         };
-        let tangent = Tangent::new(&at, &[free]);
-        let residual = vector([0.0, 6.0, 0.0]);
+        let null = NullModel::new(&at, &[free]);
         let rung = |amount: f64, change: [f64; 3]| Probe {
             effect: 0,
             shape: vec![0.0],
@@ -475,7 +474,7 @@ mod tests {
             rung: true,
         };
         let probes = [rung(1.0, [0.0, 2.0, 5.0]), rung(2.0, [30.0, 6.0, 0.0])];
-        let judged = judge(0, &effect(0.0), &probes, &residual, &tangent);
+        let judged = judge(0, &effect(0.0), &probes, &null);
         assert_eq!(judged.rungs, [[2.0], [1.0]]);
     }
 

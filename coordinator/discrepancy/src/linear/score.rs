@@ -1,17 +1,71 @@
 //! Score (Lagrange multiplier) test of one effect on the residual of a fitted model.
 //!
-//! `T^2 = r^T G (G^T B G)^-1 G^T r` is chi-squared under the null hypothesis, with as many degrees of freedom
-//! as the effect has sizes. For an effect whose size has a known sign the tail probability is halved, and an
-//! estimate of the wrong sign counts against the effect.
+//! The statistic is the decrease of the cost of the linearised problem by the effect, every unknown inside its
+//! bounds. Where no bound holds an unknown it is `T^2 = r^T G (G^T B G)^-1 G^T r`, chi-squared under the null
+//! hypothesis, with as many degrees of freedom as the effect has sizes. Without the bounds, an effect would be found
+//! wherever it could stand beside a negative friction. For an effect whose size has a known sign the tail probability
+//! is halved, and an estimate of the wrong sign counts against the effect.
 use crate::linear::tangent::Tangent;
 use nalgebra::{DMatrix, DVector};
+use search::least_squares::{Linearized, Variable, linear_minimum, prior_cost};
 use serde::{Deserialize, Serialize};
 use statrs::distribution::{ChiSquared, ContinuousCDF as _, FisherSnedecor};
+
+/// Fitted model without the effect under test (null hypothesis), linearised.
+#[derive(Clone, Debug)]
+pub struct NullModel {
+    /// Minimum of the linearised problem inside the bounds of the variables.
+    minimum: Linearized,
+    variables: Vec<Variable>,
+    /// Changes of the prediction that recalibration can absorb.
+    pub tangent: Tangent,
+}
+
+impl NullModel {
+    /// Linearises a fitted model.
+    pub fn new(at: &Linearized, variables: &[Variable]) -> Self {
+        Self {
+            minimum: linear_minimum(at, variables),
+            variables: variables.to_vec(),
+            tangent: Tangent::new(at, variables),
+        }
+    }
+
+    /// Returns the whitened residual `data - prediction` at the minimum.
+    pub fn residual(&self) -> &DVector<f64> {
+        &self.minimum.residual
+    }
+
+    /// Returns the decrease of the cost at the minimum by columns added to the prediction, with the amount of each.
+    fn decrease(&self, columns: &DMatrix<f64>) -> (f64, DVector<f64>) {
+        let p = self.variables.len();
+        let m = columns.ncols();
+        let mut with = self.minimum.clone();
+        with.x.resize(p + m, 0.0);
+        with.jacobian = with.jacobian.insert_columns(p, m, 0.0);
+        with.jacobian.columns_mut(p, m).copy_from(&-columns);
+        let mut variables = self.variables.clone();
+        let amount = Variable {
+            start: 0.0,
+            lower: f64::NEG_INFINITY,
+            upper: f64::INFINITY,
+            step: 1.0,
+            longest: f64::INFINITY,
+            prior: None,
+        };
+        variables.resize(p + m, amount);
+        let with = linear_minimum(&with, &variables);
+        let cost =
+            |at: &Linearized| at.residual.norm_squared() + prior_cost(&at.x[..p], &self.variables);
+        let decrease = (cost(&self.minimum) - cost(&with)).max(0.0);
+        (decrease, DVector::from_column_slice(&with.x[p..]))
+    }
+}
 
 /// Result of a score test.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Score {
-    /// Test statistic `T^2`.
+    /// Test statistic: decrease of the cost.
     pub statistic: f64,
     /// Degrees of freedom of the statistic: number of the effect's sizes that recalibration does not absorb.
     pub freedom: usize,
@@ -29,17 +83,11 @@ pub struct Score {
 /// signature is absorbed.
 const ABSORBED: f64 = 1e-9;
 
-/// Tests signatures on the residual `data - prediction`. A column of `signature` is the change of the
-/// whitened prediction per unit of one size; `positive` marks sizes that cannot be negative.
-pub fn score(
-    residual: &DVector<f64>,
-    signature: &DMatrix<f64>,
-    positive: &[bool],
-    tangent: &Tangent,
-) -> Score {
-    let projected = tangent.project_columns(signature);
+/// Tests signatures on the residual of a fitted model. A column of `signature` is the change of the whitened
+/// prediction per unit of one size; `positive` marks sizes that cannot be negative.
+pub fn score(null: &NullModel, signature: &DMatrix<f64>, positive: &[bool]) -> Score {
+    let projected = null.tangent.project_columns(signature);
     let information = signature.tr_mul(&projected);
-    let gain = signature.tr_mul(residual);
     let raw = signature.norm_squared();
     let absorbed = if raw > 0.0 {
         (1.0 - information.trace() / raw).clamp(0.0, 1.0)
@@ -49,10 +97,8 @@ pub fn score(
     let eigen = information.symmetric_eigen();
     let largest = eigen.eigenvalues.max();
     let m = signature.ncols();
-    let mut size = DVector::zeros(m);
     let mut variance = DVector::zeros(m);
-    let mut statistic = 0.0;
-    let mut freedom = 0;
+    let mut seen = Vec::with_capacity(m);
     for (value, vector) in eigen
         .eigenvalues
         .iter()
@@ -66,12 +112,17 @@ pub fn score(
             }
             continue;
         }
-        let part = vector.dot(&gain);
-        statistic += part * part / value;
-        size += vector * (part / value);
         variance += vector.component_mul(&vector) / *value;
-        freedom += 1;
+        seen.push(vector.into_owned());
     }
+    let freedom = seen.len();
+    let (statistic, size) = if freedom == 0 {
+        (0.0, DVector::zeros(m))
+    } else {
+        let seen = DMatrix::from_columns(&seen);
+        let (decrease, amounts) = null.decrease(&(signature * &seen));
+        (decrease, seen * amounts)
+    };
     let wrong_sign = |k: usize| positive.get(k).copied().unwrap_or(false) && size[k] < 0.0;
     let wrong = (0..m).any(wrong_sign);
     let p_value = if freedom == 0 || (wrong && m == 1) {
@@ -121,9 +172,9 @@ pub fn single(alpha: f64, tests: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use search::least_squares::{Linearized, Variable};
+    use search::least_squares::Prior;
 
-    fn tangent(columns: &[DVector<f64>]) -> Tangent {
+    fn null(residual: DVector<f64>, columns: &[DVector<f64>]) -> NullModel {
         let variable = Variable {
             start: 0.0,
             lower: -9.0,
@@ -134,10 +185,10 @@ mod tests {
         };
         let at = Linearized {
             x: vec![0.0; columns.len()],
-            residual: DVector::zeros(columns[0].len()),
+            residual,
             jacobian: DMatrix::from_columns(columns),
         };
-        Tangent::new(&at, &vec![variable; columns.len()])
+        NullModel::new(&at, &vec![variable; columns.len()])
     }
 
     fn basis(k: usize) -> DVector<f64> {
@@ -146,11 +197,13 @@ mod tests {
 
     #[test]
     fn the_size_of_a_planted_effect_comes_back() {
-        let tangent = tangent(&[basis(0)]);
         let signature = DMatrix::from_columns(&[basis(0) * 4.0 + basis(1) * 3.0]);
-        // the data hold 2 of it, of which the fit has absorbed what it could
-        let residual = tangent.project(&(signature.column(0) * 2.0));
-        let found = score(&residual, &signature, &[true], &tangent);
+        // the data hold 2 of it, of which the fit absorbs what it can
+        let tested = |held: f64| {
+            let null = null(signature.column(0) * held, &[basis(0)]);
+            score(&null, &signature, &[true])
+        };
+        let found = tested(2.0);
         assert!((found.size[0] - 2.0).abs() < 1e-9);
         assert!((found.statistic - 36.0).abs() < 1e-9);
         assert!((found.deviation[0] - 1.0 / 3.0).abs() < 1e-9);
@@ -161,7 +214,7 @@ mod tests {
             "{}",
             found.p_value
         );
-        let against = score(&-residual, &signature, &[true], &tangent);
+        let against = tested(-2.0);
         assert!((against.p_value - 1.0).abs() < 1e-12);
     }
 
@@ -170,18 +223,17 @@ mod tests {
     #[test]
     fn projection_names_the_truth_where_the_raw_test_names_the_impostor() {
         let fit = basis(0);
-        let tangent = tangent(std::slice::from_ref(&fit));
         // the truth is mostly absorbed, the impostor hardly, and they look alike in what is left
         let truth = basis(0) * 5.0 + basis(1) * 1.0 + basis(2) * 0.6;
         let impostor = basis(0) * 0.2 + basis(1) * 1.0 + basis(3) * 0.5;
-        let residual = tangent.project(&(&truth * 10.0));
-        let statistic = |signature: &DVector<f64>, tangent: &Tangent| {
+        let null = null(truth.clone(), std::slice::from_ref(&fit));
+        let statistic = |signature: &DVector<f64>| {
             let columns = DMatrix::from_columns(std::slice::from_ref(signature));
-            score(&residual, &columns, &[false], tangent).statistic
+            score(&null, &columns, &[false]).statistic
         };
-        assert!(statistic(&truth, &tangent) > statistic(&impostor, &tangent));
+        assert!(statistic(&truth) > statistic(&impostor));
         let raw = |signature: &DVector<f64>| {
-            let along = signature.dot(&residual);
+            let along = signature.dot(null.residual());
             along * along / signature.norm_squared()
         };
         assert!(raw(&truth) < raw(&impostor));
@@ -189,11 +241,43 @@ mod tests {
 
     #[test]
     fn an_effect_that_recalibration_absorbs_cannot_be_seen() {
-        let tangent = tangent(&[basis(0)]);
         let signature = DMatrix::from_columns(&[basis(0) * 7.0]);
-        let found = score(&basis(1), &signature, &[false], &tangent);
+        let found = score(&null(basis(1), &[basis(0)]), &signature, &[false]);
         assert_eq!(found.freedom, 0);
         assert!((found.p_value - 1.0).abs() < 1e-12 && found.deviation[0].is_infinite());
+    }
+
+    /// Checks that an effect which explains the data only beside a negative friction is not found, wherever the fit
+    /// ended, and that its statistic is the decrease of the cost that its size and the friction inside its bounds
+    /// make.
+    #[test]
+    fn no_effect_is_found_beside_a_negative_friction() {
+        let friction = basis(0) * 3.0 + basis(1);
+        let signature = DMatrix::from_columns(&[basis(0) * 3.0]);
+        // what the effect and a friction of -5 would explain
+        let data = basis(0) * 0.5 - basis(1) * 5.0;
+        let variable = Variable {
+            start: 0.0,
+            lower: 0.0,
+            upper: 9.0,
+            step: 0.1,
+            longest: f64::INFINITY,
+            prior: Some(Prior {
+                mean: 0.0,
+                deviation: 10.0,
+            }),
+        };
+        let variables = [variable];
+        for ended in [0.0, 0.3, 2.0] {
+            let at = Linearized {
+                x: vec![ended],
+                residual: &data - &friction * ended,
+                jacobian: DMatrix::from_columns(&[-&friction]),
+            };
+            let found = score(&NullModel::new(&at, &variables), &signature, &[false]);
+            assert!((found.statistic - 0.25).abs() < 1e-9, "{ended}: {found:?}");
+            assert!((found.size[0] - 0.5 / 3.0).abs() < 1e-9, "{found:?}");
+        }
     }
 
     #[test]

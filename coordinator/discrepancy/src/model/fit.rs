@@ -1,6 +1,7 @@
 //! Model that was fitted to a record, with the quantities that the tests use.
 use crate::linear::discrepancy::{Discrepancy, SmoothBasis};
 use crate::linear::evidence::{self, log_mean};
+use crate::linear::score::NullModel;
 use crate::linear::tangent::Tangent;
 use crate::model::unknowns::{FittedModel, Point};
 use nalgebra::DMatrix;
@@ -224,6 +225,11 @@ impl Fit {
     /// can produce.
     pub fn tangent(&self) -> Tangent {
         Tangent::new(self.search.best(), self.variables())
+    }
+
+    /// Returns the fitted model as the null hypothesis of score tests.
+    pub fn null_model(&self) -> NullModel {
+        NullModel::new(self.search.best(), self.variables())
     }
 
     /// Iterates over points for finite differences, each with the signed step of the unknown that was moved,

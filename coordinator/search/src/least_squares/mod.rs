@@ -16,4 +16,4 @@ mod tests;
 
 pub use problem::{EvaluatedPoint, LeastSquaresSettings, Linearized, Prior, Termination, Variable};
 pub use search::{Anticipated, LeastSquares};
-pub use step::{prior_cost, undamped};
+pub use step::{linear_minimum, prior_cost, undamped};

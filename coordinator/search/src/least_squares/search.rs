@@ -210,7 +210,7 @@ impl LeastSquares {
     /// Returns the residual at the minimum of the linearised problem: the residual itself if the search has
     /// converged, otherwise a first-order prediction of the residual at convergence.
     pub fn linear_minimum_residual(&self) -> DVector<f64> {
-        step::settled(&self.at, &self.variables)
+        step::linear_minimum(&self.at, &self.variables).residual
     }
 
     /// Returns the relative decrease of the cost that the linearised problem predicts for one more step.

@@ -52,14 +52,40 @@ pub(super) fn gradient_ratio(at: &Linearized, variables: &[Variable], cost: f64)
     worst
 }
 
-/// Returns the residual that the linearised problem predicts after an undamped step inside the box.
-pub(super) fn settled(at: &Linearized, variables: &[Variable]) -> DVector<f64> {
-    // twelve digits below the diagonal: decides nothing, keeps the factor
-    let step = step(at, variables, [1e-12, 0.0], false);
-    step.map_or_else(
-        || at.residual.clone(),
-        |step| &at.residual + &at.jacobian * step,
-    )
+/// Returns the minimum of the linearised problem inside the box: its point and residual, with the Jacobian of the
+/// linearisation. Variables without any effect on the cost stay where they are.
+pub fn linear_minimum(at: &Linearized, variables: &[Variable]) -> Linearized {
+    /// Maximum number of steps; each but the first frees variables that the one before left at a bound.
+    const STEPS: usize = 20;
+    let mut minimum = at.clone();
+    for _ in 0..STEPS {
+        // twelve digits below the diagonal: decides nothing, keeps the factor
+        let Some(step) = step(&minimum, variables, [1e-12, 0.0], false) else {
+            break;
+        };
+        minimum.residual += &minimum.jacobian * &step;
+        for ((x, step), v) in minimum.x.iter_mut().zip(step.iter()).zip(variables) {
+            *x = (*x + step).clamp(v.lower, v.upper);
+        }
+        if !is_held(&minimum, variables) {
+            break;
+        }
+    }
+    minimum
+}
+
+/// Returns whether a variable lies on a bound although the cost decreases towards the inside.
+fn is_held(at: &Linearized, variables: &[Variable]) -> bool {
+    /// Cosine between a column and the residual below which the cost counts as flat.
+    const FLAT: f64 = 1e-9;
+    let (gradient, curvature) = normal(at, variables);
+    let norm = (at.residual.norm_squared() + prior_cost(&at.x, variables)).sqrt();
+    let mut all = variables.iter().enumerate();
+    all.any(|(k, v)| {
+        let steep = gradient[k].abs() > FLAT * curvature[(k, k)].sqrt() * norm;
+        let on_bound = at.x[k] <= v.lower || at.x[k] >= v.upper;
+        on_bound && steep && v.lower < v.upper && !pressed(at.x[k], v, gradient[k])
+    })
 }
 
 /// Returns the slightly damped step to the minimum of the linearised problem inside the box, no component
