@@ -1,26 +1,36 @@
 //! Sizes and common traits of the effects that a diagnosis names, collected from its fit and estimates.
 use crate::baseline::base::Baseline;
+use crate::baseline::session::Session;
 use crate::diagnose::plausibility::Size;
 use crate::estimate::effect_size::{Estimate, ParameterEstimate};
+use crate::estimate::spread::Spread;
 use crate::hypothesis::candidate::WorkingCandidate;
 use crate::hypothesis::round::WorkingRound;
-use crate::model::fit::Fit;
+use crate::model::{self, fit::Fit};
 use crate::thresholds::MOST_NAMES;
 use nalgebra::{Complex, DVector};
-use protocol::announce::{EffectDescriptor, ParameterDescriptor, Role};
+use protocol::announce::{ParameterDescriptor, Role};
 
 /// Returns the estimated sizes of all effects in the answer of a diagnosis.
-pub(crate) fn claim(answer: &Fit, effects: &[Estimate]) -> Vec<Size> {
-    let added = answer.model.added.iter();
-    let sizes = added.filter_map(|effect| {
-        let own = effects.iter().find(|own| own.id == effect.id)?;
-        Some(sizes(answer, effect, own))
-    });
+pub(crate) fn claim<L>(session: &Session<'_, L>, answer: &Fit, effects: &[Estimate]) -> Vec<Size> {
+    let spread = Spread::of(&session.base.record.metric, answer);
+    let added = 0..answer.model.added.len();
+    let sizes = added.filter_map(|position| sizes(answer, position, effects, &spread));
     sizes.flatten().collect()
 }
 
-/// Returns the estimated sizes of one effect of the answer.
-fn sizes(answer: &Fit, effect: &EffectDescriptor, found: &Estimate) -> Vec<Size> {
+/// Returns the estimated sizes of the effect at a position among those of the answer; `None` where it has no estimate.
+fn sizes(
+    answer: &Fit,
+    position: usize,
+    effects: &[Estimate],
+    spread: &Spread,
+) -> Option<Vec<Size>> {
+    let effect = &answer.model.added[position];
+    let found = effects.iter().find(|own| own.id == effect.id)?;
+    let first = answer.model.first_of(position);
+    let places: Vec<usize> = model::sizes(effect).iter().map(|k| first + k).collect();
+    let together_absent = spread.region_contains_zero(answer.x(), &places);
     let both = effect.parameters.iter().zip(&found.parameters);
     let sizes = both.filter(|(p, _)| p.role == Role::Size);
     let size = |(p, own): (&ParameterDescriptor, &ParameterEstimate)| {
@@ -32,12 +42,13 @@ fn sizes(answer: &Fit, effect: &EffectDescriptor, found: &Estimate) -> Vec<Size>
             parameter: p.name.clone(),
             value: own.value,
             interval: own.interval,
+            together_absent,
             bounds: [p.lower, p.upper],
             absent: p.absent,
             tolerance: tolerated.map(|one| one.nuisance.deviation),
         }
     };
-    sizes.map(size).collect()
+    Some(sizes.map(size).collect())
 }
 
 /// Returns the reason why the ambiguity set of a round cannot be reported as answer, if there is one: too

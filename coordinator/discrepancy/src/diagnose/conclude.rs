@@ -244,11 +244,7 @@ fn implausible<L>(
         let mut rounds = diagnosis.rounds.iter();
         rounds.find_map(|round| no_answer(base, round))
     };
-    // the gain of a single effect, as far as it holds if what is left is coloured
-    let growth = Spread::of(&base.record.metric, answer).largest_growth();
-    let gain = answer.gain_over(&base.fit) / growth.map_or(1.0, |growth| growth * growth);
-    let is_needed = answer.model.added.len() == 1 && gain >= session.inputs.thresholds.gain;
-    let doubt = plausibility::doubt(&claim(answer, &diagnosis.effects), is_needed);
+    let doubt = plausibility::doubt(&claim(session, answer, &diagnosis.effects));
     doubt.map(|doubt| doubt.reason).or_else(sets)
 }
 

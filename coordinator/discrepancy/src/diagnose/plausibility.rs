@@ -15,6 +15,9 @@ pub(crate) struct Size {
     pub(crate) value: f64,
     /// 95 % confidence interval of the size.
     pub(crate) interval: [f64; 2],
+    /// Whether the joint 95 % confidence region of all sizes of the effect contains the point at which the effect
+    /// vanishes. Sizes that stand for each other may each be absent, but not all of them.
+    pub(crate) together_absent: bool,
     /// Lower and upper bound of the size in the search.
     pub(crate) bounds: [f64; 2],
     /// Value of the size at which the effect vanishes.
@@ -25,18 +28,13 @@ pub(crate) struct Size {
 }
 
 impl Size {
-    /// Returns whether the interval contains the absent value, or the size is within the tolerance of an
-    /// instrument.
+    /// Returns whether the interval contains the absent value and the region of all sizes that of the effect, or the
+    /// size is within the tolerance of an instrument.
     pub(crate) fn may_be_nothing(&self) -> bool {
         let [low, high] = self.interval;
         let holds = low <= self.absent && self.absent <= high;
-        holds || self.is_within_tolerance()
-    }
-
-    /// Returns whether the size is within the tolerance of an instrument.
-    fn is_within_tolerance(&self) -> bool {
         let usual = |sd: f64| (self.value - self.absent).abs() <= WITHIN * sd;
-        self.tolerance.is_some_and(usual)
+        (holds && self.together_absent) || self.tolerance.is_some_and(usual)
     }
 
     /// Returns whether the value lies at a bound other than its absent value.
@@ -66,33 +64,23 @@ pub(crate) struct Doubt {
 }
 
 /// Returns the first reason against naming effects of these sizes, if there is one.
-///
-/// An effect of several sizes vanishes only where all of them do, and each may stand for the others: its intervals
-/// then speak for nothing if the evidence excludes the model without the effect (`is_needed`).
-pub(crate) fn doubt(sizes: &[Size], is_needed: bool) -> Option<Doubt> {
+pub(crate) fn doubt(sizes: &[Size]) -> Option<Doubt> {
     sizes.iter().find_map(|size| {
         Some(Doubt {
             effect: size.effect.clone(),
-            reason: doubt_of(size, sizes, is_needed)?,
+            reason: doubt_of(size, sizes)?,
         })
     })
 }
 
 /// Returns the reason against one of several sizes, if there is one.
-fn doubt_of(size: &Size, sizes: &[Size], is_needed: bool) -> Option<String> {
+fn doubt_of(size: &Size, sizes: &[Size]) -> Option<String> {
     let Size {
         effect, parameter, ..
     } = size;
-    let own = sizes.iter().filter(|other| other.effect == *effect);
-    let together = is_needed && own.clone().count() > 1;
-    let is_nothing = |own: &Size| {
-        if together {
-            own.is_within_tolerance()
-        } else {
-            own.may_be_nothing()
-        }
-    };
-    if own.clone().all(is_nothing) {
+    let mut own = sizes.iter().filter(|other| other.effect == *effect);
+    // one size that is not nothing is enough
+    if own.all(Size::may_be_nothing) {
         let [low, high] = size.interval;
         return Some(match size.tolerance {
             Some(sd) if !(low..=high).contains(&size.absent) => format!(
@@ -126,6 +114,7 @@ mod tests {
             parameter: "share".to_owned(),
             value,
             interval,
+            together_absent: true,
             bounds: [-1.0, 1.0],
             absent: 0.0,
             tolerance: None,
@@ -134,7 +123,7 @@ mod tests {
 
     #[test]
     fn a_size_that_may_be_nothing_names_nothing() {
-        let said = |sizes: &[Size]| doubt(sizes, false).map(|doubt| doubt.reason);
+        let said = |sizes: &[Size]| doubt(sizes).map(|doubt| doubt.reason);
         assert_eq!(said(&[size(0.3, [0.2, 0.4])]), None);
         let nothing = size(0.1, [-0.1, 0.3]);
         assert!(
@@ -153,15 +142,14 @@ mod tests {
                 .unwrap()
                 .starts_with("slip")
         );
-        assert_eq!(
-            doubt(&[other, nothing.clone()], false).unwrap().effect,
-            "slip"
-        );
-        // two sizes that stand for each other are something where the evidence says so
-        let both = [nothing.clone(), nothing];
-        assert!(doubt(&both, false).is_some());
-        assert_eq!(doubt(&both, true), None);
-        assert!(doubt(&both[..1], true).is_some());
+        assert_eq!(doubt(&[other, nothing.clone()]).unwrap().effect, "slip");
+        // two sizes that stand for each other are something where they cannot be absent together
+        let one = Size {
+            together_absent: false,
+            ..nothing.clone()
+        };
+        assert!(doubt(&[nothing.clone(), nothing]).is_some());
+        assert_eq!(doubt(&[one.clone(), one]), None);
     }
 
     #[test]
@@ -171,18 +159,18 @@ mod tests {
             ..size(value, [value - 0.01, value + 0.01])
         };
         assert!(
-            doubt(&[toleranced(0.29)], true)
+            doubt(&[toleranced(0.29)])
                 .unwrap()
                 .reason
                 .contains("tolerance")
         );
-        assert_eq!(doubt(&[toleranced(-0.31)], false), None);
+        assert_eq!(doubt(&[toleranced(-0.31)]), None);
     }
 
     #[test]
     fn bounds_and_open_intervals_carry_nothing() {
         assert!(
-            doubt(&[size(0.9999, [0.5, 1.0])], false)
+            doubt(&[size(0.9999, [0.5, 1.0])])
                 .unwrap()
                 .reason
                 .contains("bound")
@@ -191,11 +179,6 @@ mod tests {
             absent: -2.0,
             ..size(0.5, [-1.0, 1.0])
         };
-        assert!(
-            doubt(&[wide], false)
-                .unwrap()
-                .reason
-                .contains("whole range")
-        );
+        assert!(doubt(&[wide]).unwrap().reason.contains("whole range"));
     }
 }

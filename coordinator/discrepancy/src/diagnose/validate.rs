@@ -142,7 +142,7 @@ pub(crate) async fn drop_implausible<L: Laboratory>(
     diagnosis: &mut WorkingDiagnosis,
 ) -> Result<Option<Fit>, L::Error> {
     let added = &answer.model.added;
-    let Some(doubt) = plausibility::doubt(&claim(answer, &diagnosis.effects), false) else {
+    let Some(doubt) = plausibility::doubt(&claim(session, answer, &diagnosis.effects)) else {
         return Ok(None);
     };
     let position = added.iter().position(|own| own.id == doubt.effect);
@@ -168,7 +168,7 @@ pub(crate) async fn replace_by_force<L: Laboratory>(
     if diagnosis.generic.is_some() {
         return Ok(None);
     }
-    let sizes = claim(answer, &diagnosis.effects);
+    let sizes = claim(session, answer, &diagnosis.effects);
     for (position, effect) in answer.model.added.iter().enumerate() {
         let own = |round: &&mut WorkingRound| round.added.as_ref() == Some(&effect.id);
         let Some(round) = diagnosis.rounds.iter_mut().find(own) else {

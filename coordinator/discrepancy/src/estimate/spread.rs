@@ -21,6 +21,7 @@ use record::metric::Metric;
 use record::noise::NoiseSource;
 use record::noise::student;
 use record::spectrum::Spectra;
+use statrs::distribution::{ChiSquared, ContinuousCDF as _};
 
 /// Uncertainty of the unknowns of a fit.
 #[derive(Clone, Debug)]
@@ -69,6 +70,26 @@ impl Spread {
     pub fn variance(&self, k: usize) -> f64 {
         let own = self.covariance.as_ref().map(|c| c[(k, k)]);
         own.unwrap_or(f64::INFINITY)
+    }
+
+    /// Returns whether the joint 95 % confidence region of some unknowns of the point `x` contains 0: an ellipsoid, for
+    /// one unknown its interval. Unknowns that the record does not determine are left out; without any other it does.
+    pub fn region_contains_zero(&self, x: &[f64], of: &[usize]) -> bool {
+        let determined = of.iter().copied().filter(|&k| self.variance(k).is_finite());
+        let of: Vec<usize> = determined.collect();
+        let Some(covariance) = self.covariance.as_ref().filter(|_| !of.is_empty()) else {
+            return true;
+        };
+        let own = covariance.select_rows(&of).select_columns(&of);
+        let from = DVector::from_iterator(of.len(), of.iter().map(|&k| x[k]));
+        let chi_squared = |freedom: usize| {
+            let law = ChiSquared::new(freedom as f64);
+            law.map_or(f64::INFINITY, |law| law.inverse_cdf(0.95))
+        };
+        // as much wider than for a known variance as the interval of one unknown
+        let wider = self.quantile * self.quantile / chi_squared(1);
+        own.cholesky()
+            .is_none_or(|own| from.dot(&own.solve(&from)) <= chi_squared(of.len()) * wider)
     }
 
     /// Returns how much minus twice the log likelihood rises from its minimum to the ends of an unknown's 95
@@ -212,4 +233,25 @@ fn smoothed(powers: &[f64]) -> Vec<f64> {
         about.iter().sum::<f64>() / about.len() as f64
     };
     (0..powers.len()).map(mean).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Checks that sizes which may each be absent, but not both, are told from those that may both be, and that the
+    /// region of a single unknown is its interval.
+    #[test]
+    fn a_region_holds_zero_where_all_may_be_absent_together() {
+        let spread = Spread {
+            dispersion: 1.0,
+            quantile: 1.96,
+            covariance: Some(DMatrix::from_row_slice(2, 2, &[1.0, -0.99, -0.99, 1.0])),
+            growth: DVector::from_element(2, 1.0),
+        };
+        assert!(!spread.region_contains_zero(&[1.0, 1.0], &[0, 1]));
+        assert!(spread.region_contains_zero(&[1.0, -1.0], &[0, 1]));
+        assert!(spread.region_contains_zero(&[1.95, 9.0], &[0]));
+        assert!(!spread.region_contains_zero(&[9.0, 1.97], &[1]));
+    }
 }

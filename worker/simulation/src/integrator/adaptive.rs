@@ -16,8 +16,6 @@ pub struct Adaptive<E> {
     step_limit: f64,
     /// Number of steps accepted since the last failure of Newton's method, up to [`FAILURE_MEMORY_STEPS`].
     steps_since_failure: u32,
-    /// Number of failures of Newton's method so far.
-    failures: u32,
 }
 
 /// Error: the step size control would need a step shorter than the shortest allowed one.
@@ -40,7 +38,7 @@ const RECOVERY_FACTOR: f64 = 1.1;
 /// the energy of 12 of them is off by more than 0.1 %, without it of 21. After 32 failures instead of 100 it would
 /// be 0.45 times and 10, but accurate runs of other methods fail 38 and 78 times in a revolution, and would lose their
 /// long steps.
-const FAILURES: u32 = 100;
+const FAILURES: u64 = 100;
 const SHORTENING: f64 = 0.25;
 /// Shortest step \[s\]; a run that needs shorter ones ends with an error.
 const SHORTEST_STEP: f64 = 1e-9;
@@ -61,7 +59,6 @@ impl<E: Equations> Adaptive<E> {
             step: 1e-3_f64.min(longest),
             step_limit: longest,
             steps_since_failure: FAILURE_MEMORY_STEPS,
-            failures: 0,
         }
     }
 
@@ -123,8 +120,7 @@ impl<E: Equations> Adaptive<E> {
                     self.step_limit = FAILURE_STEP_FACTOR * step;
                 }
                 self.steps_since_failure = 0;
-                self.failures += 1;
-                if self.failures == FAILURES {
+                if system.statistics.newton_rejections == FAILURES {
                     self.control.longest *= SHORTENING;
                 }
                 Ok(None)
