@@ -1,6 +1,7 @@
 //! Removal of effects that became unnecessary beside later ones, or that do not improve prediction.
 use crate::baseline::session::Session;
 use crate::diagnose::diagnosis::WorkingDiagnosis;
+use crate::hypothesis::decide::needed_beside;
 use crate::laboratory::{Laboratory, Stage};
 use crate::model::fit::Fit;
 use crate::validation::compare::ValidationRecord;
@@ -15,7 +16,6 @@ pub(crate) async fn prune<L: Laboratory>(
     shown: &[ValidationRecord<'_>],
     diagnosis: &mut WorkingDiagnosis,
 ) -> Result<Fit, L::Error> {
-    let gain = session.inputs.thresholds.gain;
     while current.model.added.len() > 1 {
         let added = 0..current.model.added.len();
         let starts = added
@@ -34,7 +34,8 @@ pub(crate) async fn prune<L: Laboratory>(
         let Some((position, fit)) = fits.first() else {
             break;
         };
-        let found = if current.gain_over(fit) < gain {
+        let needed = needed_beside(fit, session.base, &session.inputs.thresholds);
+        let found = if current.gain_over(fit) < needed {
             let id = &current.model.added[*position].id;
             let reason = format!("{id} is no longer needed with the effects that were added later");
             Some((*position, fit.clone(), reason))

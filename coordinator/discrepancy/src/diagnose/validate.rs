@@ -5,7 +5,7 @@ use crate::baseline::recalibrate;
 use crate::baseline::session::Session;
 use crate::diagnose::claim::claim;
 use crate::diagnose::diagnosis::WorkingDiagnosis;
-use crate::diagnose::plausibility::{self, Size};
+use crate::diagnose::plausibility::{self, Doubt, Size};
 use crate::diagnose::remainder::{instruments_beyond, is_converged, percent};
 use crate::diagnose::settle::{SettledFit, settle};
 use crate::estimate::effect_size::estimates;
@@ -134,19 +134,27 @@ fn no_fit(answer: &Fit, ids: &str, (rows, beyond): (&[GapRow], &[String])) -> Op
     })
 }
 
-/// Removes from an answer of several effects the first whose size cannot be named, and returns the answer
-/// without it: what can be named stays. `None` where there is no such effect or no other one.
+/// Removes from an answer of several effects the first that cannot be named beside the others, because of its size or
+/// because it explains less than what is missing, and returns the answer without it: what can be named stays. `None`
+/// where there is no such effect or no other one.
 pub(crate) async fn drop_implausible<L: Laboratory>(
     session: &mut Session<'_, L>,
     answer: &Fit,
     diagnosis: &mut WorkingDiagnosis,
 ) -> Result<Option<Fit>, L::Error> {
-    let added = &answer.model.added;
-    let Some(doubt) = plausibility::doubt(&claim(session, answer, &diagnosis.effects)) else {
+    if answer.model.added.len() < 2 {
+        return Ok(None);
+    }
+    let doubt = plausibility::doubt(&claim(session, answer, &diagnosis.effects));
+    let doubt = match doubt {
+        None => minor(session, answer).await?,
+        some => some,
+    };
+    let Some(doubt) = doubt else {
         return Ok(None);
     };
-    let position = added.iter().position(|own| own.id == doubt.effect);
-    let Some(position) = position.filter(|_| added.len() > 1) else {
+    let mut added = answer.model.added.iter();
+    let Some(position) = added.position(|own| own.id == doubt.effect) else {
         return Ok(None);
     };
     let start = answer.point().without(position);
@@ -156,6 +164,37 @@ pub(crate) async fn drop_implausible<L: Laboratory>(
     };
     diagnosis.withdraw(&doubt.effect, &doubt.reason);
     Ok(Some(fit))
+}
+
+/// Returns the least of several effects of an answer that leaves more than noise, if the effect lowers the misfit by
+/// less than that: what is missing beside it is larger, and an effect that resembles it would do as well.
+async fn minor<L: Laboratory>(
+    session: &mut Session<'_, L>,
+    answer: &Fit,
+) -> Result<Option<Doubt>, L::Error> {
+    let base = session.base;
+    let left = answer.chi_squared() - base.noise();
+    if left <= 0.0 || base.explains(answer, session.inputs.thresholds.adequacy) {
+        return Ok(None);
+    }
+    let mut least: Option<(f64, &str)> = None;
+    for (position, effect) in answer.model.added.iter().enumerate() {
+        let Some(without) = session.fit_without(answer, position).await? else {
+            continue;
+        };
+        let explained = without.chi_squared() - answer.chi_squared();
+        let share = explained / (explained + left);
+        if share < least.map_or(MAJORITY, |(share, _)| share) {
+            least = Some((share, &effect.id));
+        }
+    }
+    Ok(least.map(|(share, id)| Doubt {
+        effect: id.to_owned(),
+        reason: format!(
+            "{id} explains {} of what is left without it: what is missing beside it is larger",
+            percent(share)
+        ),
+    }))
 }
 
 /// Puts the generic force that beats an effect of the answer in the place of that effect, and returns the
