@@ -9,7 +9,7 @@ use super::{
     table::{agreement, ranges, simulation, value_table, work},
 };
 use case::kind::OtherModel;
-use protocol::case::Case;
+use protocol::{case::Case, job::Curves};
 use std::path::{Path, PathBuf};
 
 /// Figures, tables, sections and files of a report that depend on the kind of model; the defaults are those of any
@@ -50,12 +50,14 @@ pub trait ModelReport: Sync {
     }
 
     /// Returns the quantities of the machine by which an engineer judges a fit under a condition, from the
-    /// channels of the condition; empty where there are none.
+    /// channels of the condition, and from the whole simulations before and after the fit where there are any; empty
+    /// where there are no such quantities.
     fn checks(
         &self,
         _case: &Case,
         _condition: usize,
         _channels: &[ComparedChannel<'_>],
+        _runs: Option<[&Curves; 2]>,
     ) -> Vec<MachineCheck> {
         Vec::new()
     }

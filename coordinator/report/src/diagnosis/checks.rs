@@ -21,7 +21,7 @@ pub fn checks(subject: &DiagnosisInput<'_>) -> Vec<MachineCheck> {
             })
         });
         let channels: Vec<ComparedChannel<'_>> = channels.collect();
-        kind::of(subject.case).checks(subject.case, shown.record.condition, &channels)
+        kind::of(subject.case).checks(subject.case, shown.record.condition, &channels, None)
     });
     checks.collect()
 }

@@ -3,7 +3,8 @@ use crate::machine_check::{ComparedChannel, MachineCheck};
 use crate::number::{fixed, percent};
 use crate::words::condition_name;
 use protocol::case::Case;
-use protocol::pumping_unit::{Machine, Sensor};
+use protocol::job::{Curves, Verdict};
+use protocol::pumping_unit::{Machine, Sensor, Simulation};
 
 const KILO: f64 = 1e-3;
 
@@ -21,11 +22,18 @@ const LEAST_MISFIT: f64 = 0.02;
 /// 0.52 of what the recommended parameters leave.
 const MISFIT_GROWTH: f64 = 2.0;
 
-/// Returns stroke, peak torque and misfit of the torque under a condition.
+/// Error of the energy balance, relative to the work of the revolution, from which a simulation is not that of the
+/// machine. Runs whose contacts do not chatter are off by 1e-5 to 2e-3, runs of long cylinders with strongly damped
+/// contacts by up to 2 (docs/measurements.md, *Contacts that chatter*).
+const ENERGY_ERROR: f64 = 0.01;
+
+/// Returns stroke, peak torque and misfit of the torque under a condition, and the error of the energy balance where
+/// it is not small.
 pub(super) fn checks(
     case: &Case,
     condition: usize,
     channels: &[ComparedChannel<'_>],
+    runs: Option<[&Curves; 2]>,
 ) -> Vec<MachineCheck> {
     let name = condition_name(case, condition);
     let of = |sensor: Sensor| {
@@ -71,7 +79,56 @@ pub(super) fn checks(
             });
         }
     }
+    let errors = runs
+        .map(|runs| runs.map(|run| Simulation::of(run).ok().and_then(|run| energy_error(&run))));
+    checks.extend(errors.and_then(|[before, after]| {
+        energy(check("energy balance error", "%", [None, before, after]))
+    }));
     checks
+}
+
+/// Returns the relative error of the energy balance of a simulation that was completed.
+fn energy_error(simulation: &Simulation) -> Option<f64> {
+    (simulation.verdict == Verdict::Complete).then_some(simulation.energy.relative_error)
+}
+
+/// Returns the errors of the energy balance as a quantity, if one of them is not small.
+fn energy(error: MachineCheck) -> Option<MachineCheck> {
+    let open = |own: Option<f64>| own.is_some_and(is_open);
+    let percents = |own: Option<f64>| own.map(|own| 100.0 * own);
+    let flag = error.after.filter(|own| is_open(*own));
+    let flag = flag.map(|own| format!("Under condition {} {}", error.condition, open_balance(own)));
+    (open(error.before) || open(error.after)).then(|| MachineCheck {
+        flag,
+        before: percents(error.before),
+        after: percents(error.after),
+        limit: percents(Some(ENERGY_ERROR)),
+        ..error
+    })
+}
+
+/// Returns whether an error of the energy balance is too large for the simulation to be that of the machine.
+fn is_open(error: f64) -> bool {
+    error > ENERGY_ERROR
+}
+
+/// Returns why a simulation whose energy balance is open is not to be used; `None` for others.
+pub(super) fn warning(simulation: &Simulation) -> Option<String> {
+    let error = energy_error(simulation).filter(|own| is_open(*own))?;
+    Some(format!(
+        "Do not use this simulation: {}",
+        open_balance(error)
+    ))
+}
+
+/// Describes an error of the energy balance that is too large, and its remedy.
+fn open_balance(error: f64) -> String {
+    format!(
+        "the energy balance of the simulation is off by {} of its work: a rope chatters on its head, which the steps \
+         do not resolve, and the stress is not that of the machine. Simulate with shorter steps \
+         (`longest_step_s`) or shorter cylinders.",
+        percent(error)
+    )
 }
 
 fn peak_to_peak(curve: &[f64]) -> f64 {
@@ -144,7 +201,7 @@ mod tests {
                 before: &curve(before),
                 after: &curve(after),
             };
-            checks(&case(), 0, &[compared]).remove(0)
+            checks(&case(), 0, &[compared], None).remove(0)
         };
         let lost = stroke(3.98, 3.67);
         assert_eq!((lost.measured, lost.after), (Some(3.97), Some(3.67)));
@@ -169,7 +226,7 @@ mod tests {
                 before: &curve(before),
                 after: &curve(after),
             };
-            checks(&case(), 0, &[compared])
+            checks(&case(), 0, &[compared], None)
         };
         let [peak, grown] = misfit(1.0, 2.1).try_into().unwrap();
         assert!((peak.measured.unwrap() - 38.5).abs() < 1e-12);
@@ -178,6 +235,32 @@ mod tests {
         assert_eq!(misfit(1.0, 1.9)[1].flag, None);
         // what no instrument resolves is no reason
         assert_eq!(misfit(0.1, 0.7)[1].flag, None);
+    }
+
+    /// Checks that a fit whose simulation does not keep its energy is flagged, and that the balance of others is not
+    /// listed.
+    #[test]
+    fn a_simulation_that_loses_energy_is_flagged() {
+        let of = |before: f64, after: f64| {
+            energy(MachineCheck {
+                condition: "5rpm".to_owned(),
+                quantity: "energy balance error",
+                unit: "%",
+                measured: None,
+                before: Some(before),
+                after: Some(after),
+                limit: None,
+                flag: None,
+            })
+        };
+        let open = of(1e-5, 0.12).unwrap();
+        assert!((open.after.unwrap() - 12.0).abs() < 1e-9);
+        let flag = open.flag.unwrap();
+        for part in ["5rpm", "12.0\u{a0}%", "longest_step_s"] {
+            assert!(flag.contains(part), "{part}: {flag}");
+        }
+        assert_eq!(of(0.12, 1e-5).unwrap().flag, None);
+        assert_eq!(of(2e-3, 2e-3), None);
     }
 
     /// Checks that a simulation that failed has no quantities, and that what was not measured is not compared.
@@ -190,7 +273,7 @@ mod tests {
             before: &[1e3, 2e3],
             after: &[1e3, -4e3, 2e3, 0.0],
         };
-        let all = checks(&case(), 0, &[compared]);
+        let all = checks(&case(), 0, &[compared], None);
         assert_eq!(all.len(), 1);
         assert_eq!(
             (all[0].measured, all[0].before, all[0].after),

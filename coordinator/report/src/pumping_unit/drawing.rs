@@ -10,6 +10,7 @@ use crate::{
 use case::kind::PumpingUnitModel;
 use maud::html;
 use protocol::case::Case;
+use protocol::job::Curves;
 use protocol::pumping_unit::{Machine, Simulation};
 use std::path::{Path, PathBuf};
 
@@ -73,8 +74,9 @@ impl ModelReport for PumpingUnitModel {
         case: &Case,
         condition: usize,
         channels: &[ComparedChannel<'_>],
+        runs: Option<[&Curves; 2]>,
     ) -> Vec<MachineCheck> {
-        check::checks(case, condition, channels)
+        check::checks(case, condition, channels, runs)
     }
 
     fn files(

@@ -25,7 +25,8 @@ pub fn condition_checks(case: &Case, result: &ConditionResult) -> Vec<MachineChe
         after: after.channel(channel),
     });
     let channels: Vec<ComparedChannel<'_>> = channels.collect();
-    kind::of(case).checks(case, result.condition, &channels)
+    let curves = runs.map(|run| &run.curves);
+    kind::of(case).checks(case, result.condition, &channels, Some(curves))
 }
 
 /// Builds the section of quantities with the recommended and the optimised parameters.
