@@ -1,4 +1,5 @@
 //! Arguments shared by several commands, one kind per file.
+pub(super) mod assessment;
 pub(crate) mod case;
 pub(super) mod derivatives;
 pub(crate) mod hours;
@@ -8,4 +9,5 @@ pub(super) mod listening;
 pub(crate) mod nodes;
 pub(crate) mod output;
 pub(super) mod settings;
+pub(super) mod study;
 pub(super) mod workers;

@@ -1,7 +1,7 @@
 //! `horsehead diagnose`: where simulation and measured records differ, which missing effect explains the
 //! difference, how certain that is, and how far the gap closes.
 use crate::cli::{
-    argument::{case::case_folder, output::OutputChoice, workers::WorkersChoice},
+    argument::{output::OutputChoice, study::StudyArguments, workers::WorkersChoice},
     output::{diagnosis::DiagnosisOutput, problem::EXIT_CODES, progress::StageDisplay},
 };
 use clap::Args;
@@ -12,9 +12,7 @@ use run::{
     message,
     opened::Run,
     session::Session,
-    target::StudyTarget,
 };
-use std::path::PathBuf;
 
 /// Find what the simulation is missing: where, which effect, how large, and the proof.
 #[derive(Debug, Args)]
@@ -30,16 +28,8 @@ takes; --add appends it to the case itself, and from then on it is ordinary phys
 stops cleanly: results so far are kept, and the same command goes on.
 {EXIT_CODES}"))]
 pub(super) struct Arguments {
-    /// Case folder, or the folder of a finished calibration.
-    #[arg(value_name = "CASE|RUN", value_parser = case_folder)]
-    target: PathBuf,
-    /// Folder whose inputs and records replace those of the case: a new test of the
-    /// same machine.
-    #[arg(long, value_name = "DIR", env = "HORSEHEAD_MEASURED")]
-    measured: Option<PathBuf>,
-    /// Gene file to start the recalibration from, such as a run's `calibrated.toml`.
-    #[arg(long, value_name = "FILE", env = "HORSEHEAD_GENES")]
-    genes: Option<PathBuf>,
+    #[command(flatten)]
+    study: StudyArguments,
     /// Effect that is not to be considered; may be given several times, or with commas.
     #[arg(
         long,
@@ -51,20 +41,9 @@ pub(super) struct Arguments {
     /// Effects that are added at most.
     #[arg(long, default_value_t = 3, value_name = "N", env = "HORSEHEAD_ROUNDS", value_parser = clap::value_parser!(u8).range(1..=5))]
     rounds: u8,
-    /// Take every derivative as a difference of whole simulations, as if the model gave none: slower, and a
-    /// check of the exact derivatives.
-    #[arg(long, env = "HORSEHEAD_DIFFERENCES")]
-    differences: bool,
     /// Append what is found to the case's case.toml.
     #[arg(long, env = "HORSEHEAD_ADD")]
     add: bool,
-    /// Fixes every random choice: the same seed gives the same bits [default: that of the calibration, or 1].
-    #[arg(long, env = "HORSEHEAD_SEED")]
-    seed: Option<u64>,
-    /// Run folder [default: runs/CASE-diagnose-seedN, with what distinguishes the calibration, --genes, the effects of the
-    /// case and --measured].
-    #[arg(long, value_name = "DIR", env = "HORSEHEAD_RUN")]
-    run: Option<PathBuf>,
     #[command(flatten)]
     output: OutputChoice,
     #[command(flatten)]
@@ -74,12 +53,8 @@ pub(super) struct Arguments {
 /// Runs the diagnosis from the measured records to the report.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let session = Session::begin();
-    let mut target = StudyTarget::read(
-        &arguments.target,
-        arguments.measured.as_deref(),
-        arguments.genes.as_deref(),
-    )?;
-    let seed = target.seed(arguments.seed);
+    let mut target = arguments.study.read()?;
+    let seed = target.seed(arguments.study.seed);
     let settings = DiagnosisSettings {
         thresholds: Thresholds {
             rounds: usize::from(arguments.rounds),
@@ -87,9 +62,9 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
             without: arguments.without.clone(),
             ..Thresholds::default()
         },
-        differences: arguments.differences,
+        differences: arguments.study.differences,
     };
-    let path = match &arguments.run {
+    let path = match &arguments.study.run {
         Some(path) => path.clone(),
         // after --add the case has what the run found
         None => match target.earlier_path(seed, &settings)? {

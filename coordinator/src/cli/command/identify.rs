@@ -1,7 +1,7 @@
 //! `horsehead identify`: finds which unknowns the measured records determine, individually and jointly, and
 //! which remain undetermined.
 use crate::cli::{
-    argument::{case::case_folder, output::OutputChoice, workers::WorkersChoice},
+    argument::{output::OutputChoice, study::StudyArguments, workers::WorkersChoice},
     output::{identification::show, problem::EXIT_CODES, progress::StageDisplay},
 };
 use clap::Args;
@@ -12,9 +12,7 @@ use run::{
     message,
     opened::Run,
     session::Session,
-    target::StudyTarget,
 };
-use std::path::PathBuf;
 
 /// Say which unknowns a record determines, how well, which trade off, and what that does to predictions.
 #[derive(Debug, Args)]
@@ -31,26 +29,8 @@ Where the fit leaves more than noise, intervals are widened accordingly; run `di
 Ctrl-C stops cleanly: results so far are kept, and the same command goes on.
 {EXIT_CODES}"))]
 pub(super) struct Arguments {
-    /// Case folder, or the folder of a finished calibration.
-    #[arg(value_name = "CASE|RUN", value_parser = case_folder)]
-    target: PathBuf,
-    /// Folder whose inputs and records replace those of the case: a new test of the
-    /// same machine.
-    #[arg(long, value_name = "DIR", env = "HORSEHEAD_MEASURED")]
-    measured: Option<PathBuf>,
-    /// Gene file to start the fit from, such as a run's `calibrated.toml`.
-    #[arg(long, value_name = "FILE", env = "HORSEHEAD_GENES")]
-    genes: Option<PathBuf>,
-    /// Take every derivative as a difference of whole simulations, as if the model gave none: slower.
-    #[arg(long, env = "HORSEHEAD_DIFFERENCES")]
-    differences: bool,
-    /// Fixes every random choice: the same seed gives the same bits [default: that of the calibration, or 1].
-    #[arg(long, env = "HORSEHEAD_SEED")]
-    seed: Option<u64>,
-    /// Run folder [default: runs/CASE-identify-seedN, with what distinguishes the calibration, --genes, the effects of the
-    /// case and --measured].
-    #[arg(long, value_name = "DIR", env = "HORSEHEAD_RUN")]
-    run: Option<PathBuf>,
+    #[command(flatten)]
+    study: StudyArguments,
     #[command(flatten)]
     output: OutputChoice,
     #[command(flatten)]
@@ -60,20 +40,16 @@ pub(super) struct Arguments {
 /// Runs the identifiability analysis from the measured records to the report.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let session = Session::begin();
-    let target = StudyTarget::read(
-        &arguments.target,
-        arguments.measured.as_deref(),
-        arguments.genes.as_deref(),
-    )?;
-    let seed = target.seed(arguments.seed);
-    let path = match &arguments.run {
+    let target = arguments.study.read()?;
+    let seed = target.seed(arguments.study.seed);
+    let path = match &arguments.study.run {
         Some(path) => path.clone(),
         None => target.run_path(IDENTIFY, seed)?,
     };
     message::print_notes(&target.loaded.notes);
     let settings = IdentificationSettings {
         orders: Thresholds::default().orders,
-        differences: arguments.differences,
+        differences: arguments.study.differences,
     };
     let manifest = target.manifest(seed, settings)?;
     let run = Run::begin(&path, manifest, target.loaded.case.clone())?;

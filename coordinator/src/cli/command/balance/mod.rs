@@ -7,7 +7,10 @@ mod summary;
 mod torque;
 
 use crate::cli::{
-    argument::{case::case_folder, hours::Operation, output::OutputChoice, workers::WorkersChoice},
+    argument::{
+        assessment::AssessmentArguments, hours::Operation, output::OutputChoice,
+        workers::WorkersChoice,
+    },
     output::{assessment::show, problem::EXIT_CODES, progress::StageDisplay},
 };
 use anyhow::Context as _;
@@ -25,7 +28,7 @@ use run::{
     message,
     session::{Session, temporary::compare_once},
 };
-use std::{f64::consts::TAU, path::PathBuf};
+use std::f64::consts::TAU;
 use study::CompareRequest;
 use summary::{AssessedCrank, states};
 use support::{Problem, interpolation::periodic};
@@ -45,17 +48,10 @@ simulated. Of a calibration, the recommended and the optimised parameters are co
 diagnosis, the machine with and without each effect that it found.
 {EXIT_CODES}"))]
 pub(super) struct Arguments {
-    /// Case folder, or the folder of a finished calibration or diagnosis.
-    #[arg(value_name = "CASE|RUN", value_parser = case_folder)]
-    target: PathBuf,
-    /// Gene file whose parameters are assessed, such as a run's `calibrated.toml`; the recommended ones by default.
-    #[arg(long, value_name = "FILE", env = "HORSEHEAD_GENES")]
-    genes: Option<PathBuf>,
+    #[command(flatten)]
+    assessment: AssessmentArguments,
     #[command(flatten)]
     options: BalanceOptions,
-    /// Folder of the assessment [default: `balance` in the folder of the run, or runs/CASE-balance-HASH-seed0].
-    #[arg(long, value_name = "DIR", env = "HORSEHEAD_RUN")]
-    run: Option<PathBuf>,
     #[command(flatten)]
     output: OutputChoice,
     #[command(flatten)]
@@ -73,7 +69,7 @@ const SETTLED: f64 = 1e-3;
 /// Simulates the conditions, seeks the counterweight, simulates it, writes the report and prints the result.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let session = Session::begin();
-    let target = AssessmentTarget::read(&arguments.target, arguments.genes.as_deref())?;
+    let target = arguments.assessment.read()?;
     message::print_notes(&target.notes);
     let unit = PumpingUnit::of(target.case.clone()).map_err(|error| Problem {
         message: format!("the balance is that of a pumping unit's crank: {error}"),
@@ -81,7 +77,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     })?;
     let plan = arguments.options.plan(&target.case, &unit.machine)?;
     let conditions: Vec<usize> = plan.operations.iter().map(|own| own.condition).collect();
-    let run = target.begin(arguments.run.as_deref(), BalanceSettings)?;
+    let run = target.begin(arguments.assessment.run.as_deref(), BalanceSettings)?;
     let options = arguments.workers.session()?;
     let simulated = session.work(&run, &options, async |dispatch, stop| {
         let mut display = StageDisplay::new();

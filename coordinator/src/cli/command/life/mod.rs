@@ -6,7 +6,7 @@ mod place;
 mod spots;
 
 use crate::cli::{
-    argument::{case::case_folder, output::OutputChoice, workers::WorkersChoice},
+    argument::{assessment::AssessmentArguments, output::OutputChoice, workers::WorkersChoice},
     output::{assessment::show, problem::EXIT_CODES, progress::StageDisplay},
 };
 use body::{Body, TableModes};
@@ -23,14 +23,11 @@ use report::{
     pumping_unit::{HeadLifePicture, head_life},
 };
 use run::{
-    assessment::{
-        AssessmentTarget, LifeSettings, SimulatedMachine, SimulatedMachines, simulate_machines,
-    },
+    assessment::{LifeSettings, SimulatedMachine, SimulatedMachines, simulate_machines},
     message,
     session::Session,
 };
 use spots::{AssessedVariant, Spread, Variant};
-use std::path::PathBuf;
 use study::{Evaluator, Stop};
 use support::Problem;
 
@@ -48,17 +45,10 @@ optimised parameters are compared; of a diagnosis, the machine with and without 
 it found. What was simulated is kept: another curve or another mix of hours is answered at once.
 {EXIT_CODES}"))]
 pub(super) struct Arguments {
-    /// Case folder, or the folder of a finished calibration or diagnosis.
-    #[arg(value_name = "CASE|RUN", value_parser = case_folder)]
-    target: PathBuf,
-    /// Gene file whose parameters are assessed, such as a run's `calibrated.toml`; the recommended ones by default.
-    #[arg(long, value_name = "FILE", env = "HORSEHEAD_GENES")]
-    genes: Option<PathBuf>,
+    #[command(flatten)]
+    assessment: AssessmentArguments,
     #[command(flatten)]
     options: LifeOptions,
-    /// Folder of the assessment [default: `life` in the folder of the run, or runs/CASE-life-HASH-seed0].
-    #[arg(long, value_name = "DIR", env = "HORSEHEAD_RUN")]
-    run: Option<PathBuf>,
     #[command(flatten)]
     output: OutputChoice,
     #[command(flatten)]
@@ -68,7 +58,7 @@ pub(super) struct Arguments {
 /// Simulates the conditions, assesses the surface, writes the report and prints the result.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let session = Session::begin();
-    let target = AssessmentTarget::read(&arguments.target, arguments.genes.as_deref())?;
+    let target = arguments.assessment.read()?;
     message::print_notes(&target.notes);
     let unit = pumping_unit(&target.case)?;
     let plan = arguments.options.plan(&target.case, &unit.machine)?;
@@ -86,7 +76,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     });
     let head = head.transpose()?;
     let conditions: Vec<usize> = plan.conditions().collect();
-    let run = target.begin(arguments.run.as_deref(), LifeSettings)?;
+    let run = target.begin(arguments.assessment.run.as_deref(), LifeSettings)?;
     let (body, simulated) = session.work(
         &run,
         &arguments.workers.session()?,
