@@ -125,8 +125,8 @@ pub(super) fn warning(simulation: &Simulation) -> Option<String> {
 fn open_balance(error: f64) -> String {
     format!(
         "the energy balance of the simulation is off by {} of its work: a rope chatters on its head, which the steps \
-         do not resolve, and the stress is not that of the machine. Simulate with shorter steps \
-         (`longest_step_s`) or shorter cylinders.",
+         do not resolve, and the stress is not that of the machine. Simulate with a smaller \
+         `tolerance` or shorter cylinders.",
         percent(error)
     )
 }
@@ -256,7 +256,7 @@ mod tests {
         let open = of(1e-5, 0.12).unwrap();
         assert!((open.after.unwrap() - 12.0).abs() < 1e-9);
         let flag = open.flag.unwrap();
-        for part in ["5rpm", "12.0\u{a0}%", "longest_step_s"] {
+        for part in ["5rpm", "12.0\u{a0}%", "`tolerance`"] {
             assert!(flag.contains(part), "{part}: {flag}");
         }
         assert_eq!(of(0.12, 1e-5).unwrap().flag, None);
