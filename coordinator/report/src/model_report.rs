@@ -49,6 +49,11 @@ pub trait ModelReport: Sync {
         ]
     }
 
+    /// Returns the reason not to use a simulation although it was completed, as a sentence; `None` if there is none.
+    fn warning(&self, _run: &SingleRun) -> Option<String> {
+        None
+    }
+
     /// Returns the quantities of the machine by which an engineer judges a fit under a condition, from the
     /// channels of the condition, and from the whole simulations before and after the fit where there are any; empty
     /// where there are no such quantities.

@@ -75,7 +75,9 @@ pub fn simulation(run: &SingleRun) -> Report {
 
 /// Returns the table of the ranges of a simulation's curves.
 pub fn ranges(run: &SingleRun) -> Option<Table> {
-    kind::of(&run.case).tables(run).into_iter().next()
+    let kind = kind::of(&run.case);
+    let table = kind.tables(run).into_iter().next()?;
+    Some(table.with_notes(kind.warning(run)))
 }
 
 /// Builds the table of a simulation's agreement with its measured record, if there is one.

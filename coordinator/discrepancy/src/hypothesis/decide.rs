@@ -17,9 +17,8 @@ pub(crate) fn decide(
     thresholds: &Thresholds,
 ) -> Option<Fit> {
     let best = round.refits.first()?;
-    let needed = needed_beside(current, base, thresholds);
     let gain = round.nats(best.log_evidence);
-    if let Some(doubt) = doubt((round.p_value, thresholds.alpha), (gain, needed)) {
+    if let Some(doubt) = doubt(round.p_value, gain, thresholds) {
         round.reason = Some(format!("{} is the likeliest, but {doubt}", best.id));
         return None;
     }
@@ -27,6 +26,14 @@ pub(crate) fn decide(
     if let Some(trace) = change.and_then(|own| own.trace(&best.id, &base.record.record)) {
         round.reason = Some(trace);
         round.trace = Some(best.id.clone());
+        return None;
+    }
+    let needed = needed_beside(current, base, thresholds);
+    if gain < needed {
+        round.reason = Some(format!(
+            "{} is the likeliest, but it gains {gain:.1} nats where the laws of the effects beside it may be off by {needed:.1}",
+            best.id
+        ));
         return None;
     }
     let (id, fit) = (best.id.clone(), best.fit.clone());
@@ -71,9 +78,10 @@ pub(crate) fn needed_beside(present: &Fit, base: &Baseline, thresholds: &Thresho
     thresholds.gain.max(LAW_FLOOR * LAW_FLOOR * gained)
 }
 
-/// Returns the reason why an effect is not accepted for its family-wise p-value, above the level, or its gain of log
-/// evidence (nats), below the one that is needed; `None` if both suffice.
-fn doubt((p_value, alpha): (f64, f64), (gain, needed): (f64, f64)) -> Option<String> {
+/// Returns the reason why an effect is not accepted for its family-wise p-value or its gain of log evidence
+/// (nats); `None` if both suffice.
+fn doubt(p_value: f64, gain: f64, thresholds: &Thresholds) -> Option<String> {
+    let (alpha, needed) = (thresholds.alpha, thresholds.gain);
     let chance = format!("the family-wise p-value is {p_value:.1e}, above the level {alpha}");
     let poor = format!("it gains {gain:.1} nats where {needed:.0} are required");
     match (p_value > alpha, gain < needed) {
@@ -90,7 +98,7 @@ mod tests {
 
     #[test]
     fn a_doubt_names_what_is_missing_and_only_that() {
-        let said = |p, gain| doubt((p, 0.01), (gain, 3.0));
+        let said = |p, gain| doubt(p, gain, &Thresholds::default());
         assert_eq!(said(1e-4, 3.0), None);
         assert_eq!(
             said(0.0432, 7.0).unwrap(),

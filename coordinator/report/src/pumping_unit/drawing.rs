@@ -69,6 +69,10 @@ impl ModelReport for PumpingUnitModel {
         )
     }
 
+    fn warning(&self, run: &SingleRun) -> Option<String> {
+        check::warning(&Simulation::of(&run.curves).ok()?)
+    }
+
     fn checks(
         &self,
         case: &Case,

@@ -1,5 +1,4 @@
 //! Tables of one simulation of the machine.
-use super::check::warning;
 use crate::data::SingleRun;
 use crate::document::{Row, Table};
 use crate::number::{MISSING, fixed, range, significant};
@@ -57,12 +56,10 @@ pub fn balance(run: &SingleRun, simulation: &Simulation) -> Table {
     rows.extend(agreement(run));
     rows.extend(energy(&simulation.energy));
     rows.extend(work(&simulation.counters, simulation.wall_s));
-    value_table("Stroke, agreement, energy and work", rows)
-        .with_notes([
-            "Error of the balance: what it leaves over, relative to the larger of input and \
+    value_table("Stroke, agreement, energy and work", rows).with_notes([
+        "Error of the balance: what it leaves over, relative to the larger of input and \
              output work.",
-        ])
-        .with_notes(warning(simulation))
+    ])
 }
 
 fn energy(energy: &Energy) -> Vec<Row> {

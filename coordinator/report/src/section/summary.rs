@@ -3,6 +3,7 @@ use super::machine;
 use crate::chart;
 use crate::data::{Calibration, SingleRun};
 use crate::document::{Block, Section, figures};
+use crate::kind;
 use crate::machine_check::MachineCheck;
 use crate::number::significant;
 use crate::words;
@@ -90,6 +91,8 @@ pub(super) fn simulation(run: &SingleRun) -> Section {
         run.genes_name,
         words::verdict(&run.curves.verdict)
     ))];
+    let warning = kind::of(&run.case).warning(run);
+    blocks.extend(warning.map(|said| Block::Warning(vec![said])));
     if let Some(evaluation) = &run.evaluation {
         if run.origin.synthetic {
             blocks.push(Block::Text(words::SYNTHETIC.to_owned()));
