@@ -77,8 +77,9 @@ pub const WITHIN: f64 = 3.0;
 pub(crate) const MODEL_FLOOR: f64 = 1e-3;
 
 /// Error of the laws of effects that were found, as a share of what they change: real friction, losses and lags follow
-/// idealised laws no better. Its square is the share of their gain of evidence that such an error may lose. Beside the friction of the shipped record, whose law is not the library's, a second
+/// idealised laws no better. Beside the friction of the shipped record, whose law is not the library's, a second
 /// effect gains 9.9 nats and changes less than that.
+/// The square is the share of their gain of evidence that such an error may cost.
 pub(crate) const LAW_FLOOR: f64 = 0.05;
 
 /// Prior standard deviations beyond which an instrument's error in a fit without effects indicates that

@@ -73,7 +73,7 @@ pub fn simulation(run: &SingleRun) -> Report {
     Report::new(title, &run.origin.run, section::simulation(run))
 }
 
-/// Returns the table of the ranges of a simulation's curves.
+/// Returns the table of the ranges of a simulation's curves, with the reason not to use it as a note if there is one.
 pub fn ranges(run: &SingleRun) -> Option<Table> {
     let kind = kind::of(&run.case);
     let table = kind.tables(run).into_iter().next()?;

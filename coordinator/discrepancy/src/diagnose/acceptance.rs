@@ -4,7 +4,7 @@ use crate::baseline::recheck::{Checked, check_against_finer};
 use crate::baseline::session::Session;
 use crate::diagnose::diagnosis::WorkingDiagnosis;
 use crate::estimate::force::force;
-use crate::hypothesis::decide::{decide, decide_joint};
+use crate::hypothesis::decide::{decide, decide_joint, needed_beside};
 use crate::hypothesis::generic_force::{Challenger, challenge};
 use crate::hypothesis::joint_refit::{JointRefit, joint_refits};
 use crate::hypothesis::round::WorkingRound;
@@ -112,7 +112,7 @@ async fn doubt_by_finer_model<L: Laboratory>(
     id: &str,
     diagnosis: &mut WorkingDiagnosis,
 ) -> Result<Option<String>, L::Error> {
-    let needed = session.inputs.thresholds.gain;
+    let needed = needed_beside(before, session.base, &session.inputs.thresholds);
     let Some(Checked { preflight, gain }) = check_against_finer(session, before, after).await?
     else {
         return Ok(None);

@@ -8,8 +8,8 @@ use crate::validation::compare::ValidationRecord;
 use crate::validation::predictive::{Needed, rejection_reason, scores};
 use search::least_squares::LeastSquaresSettings;
 
-/// Removes, one at a time, effects without which the evidence falls by less than the gain required to add an
-/// effect, and effects that do not improve the prediction of data excluded from the fit.
+/// Removes, one at a time, effects without which the evidence falls by less than an effect needs beside the others
+/// ([`needed_beside`]), and effects that do not improve the prediction of data excluded from the fit.
 pub(crate) async fn prune<L: Laboratory>(
     session: &mut Session<'_, L>,
     mut current: Fit,
@@ -35,9 +35,12 @@ pub(crate) async fn prune<L: Laboratory>(
             break;
         };
         let needed = needed_beside(fit, session.base, &session.inputs.thresholds);
-        let found = if current.gain_over(fit) < needed {
+        let gain = current.gain_over(fit);
+        let found = if gain < needed {
             let id = &current.model.added[*position].id;
-            let reason = format!("{id} is no longer needed with the effects that were added later");
+            let reason = format!(
+                "{id} gains {gain:.1} nats beside the others where {needed:.1} are required"
+            );
             Some((*position, fit.clone(), reason))
         } else {
             find_unpredictive(session, shown, (&current, fits), diagnosis).await?

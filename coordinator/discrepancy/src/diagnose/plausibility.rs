@@ -28,13 +28,22 @@ pub(crate) struct Size {
 }
 
 impl Size {
-    /// Returns whether the interval contains the absent value and the region of all sizes that of the effect, or the
-    /// size is within the tolerance of an instrument.
-    pub(crate) fn may_be_nothing(&self) -> bool {
+    /// Returns whether the size may be absent by its own interval, or is within the tolerance of an instrument.
+    pub(crate) fn may_be_absent(&self) -> bool {
         let [low, high] = self.interval;
-        let holds = low <= self.absent && self.absent <= high;
+        (low <= self.absent && self.absent <= high) || self.is_within_tolerance()
+    }
+
+    /// Returns whether the size may be absent by its own interval and all sizes of the effect by their joint region, or
+    /// the size is within the tolerance of an instrument.
+    fn may_be_nothing(&self) -> bool {
+        (self.may_be_absent() && self.together_absent) || self.is_within_tolerance()
+    }
+
+    /// Returns whether the size is within the tolerance of an instrument.
+    fn is_within_tolerance(&self) -> bool {
         let usual = |sd: f64| (self.value - self.absent).abs() <= WITHIN * sd;
-        (holds && self.together_absent) || self.tolerance.is_some_and(usual)
+        self.tolerance.is_some_and(usual)
     }
 
     /// Returns whether the value lies at a bound other than its absent value.

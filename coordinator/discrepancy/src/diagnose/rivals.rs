@@ -8,6 +8,7 @@ use crate::baseline::recheck::check_against_finer;
 use crate::baseline::session::Session;
 use crate::diagnose::diagnosis::WorkingDiagnosis;
 use crate::hypothesis::candidate::WorkingCandidate;
+use crate::hypothesis::decide::needed_beside;
 use crate::hypothesis::refit::{Refitted, may_compete};
 use crate::hypothesis::round::WorkingRound;
 use crate::laboratory::{Laboratory, Stage};
@@ -122,11 +123,11 @@ async fn is_acceptable<L: Laboratory>(
     (answer, position): (&Fit, usize),
     fit: &Fit,
 ) -> Result<bool, L::Error> {
-    let needed = session.inputs.thresholds.gain;
     let without = session.fit_without(answer, position).await?;
     let Some(without) = without else {
         return Ok(false);
     };
+    let needed = needed_beside(&without, session.base, &session.inputs.thresholds);
     let gained = fit.gain_over(&without);
     if gained.is_nan() || gained < needed {
         return Ok(false);

@@ -167,7 +167,8 @@ pub(crate) async fn drop_implausible<L: Laboratory>(
 }
 
 /// Returns the least of several effects of an answer that leaves more than noise, if the effect lowers the misfit by
-/// less than that: what is missing beside it is larger, and an effect that resembles it would do as well.
+/// less than that: what is missing beside it is larger, and an effect that resembles it would do as well. The fits that
+/// this takes are not optional: they are made without a budget, too.
 async fn minor<L: Laboratory>(
     session: &mut Session<'_, L>,
     answer: &Fit,
@@ -182,7 +183,7 @@ async fn minor<L: Laboratory>(
         let Some(without) = session.fit_without(answer, position).await? else {
             continue;
         };
-        let explained = without.chi_squared() - answer.chi_squared();
+        let explained = (without.chi_squared() - answer.chi_squared()).max(0.0);
         let share = explained / (explained + left);
         if share < least.map_or(MAJORITY, |(share, _)| share) {
             least = Some((share, &effect.id));
@@ -215,7 +216,7 @@ pub(crate) async fn replace_by_force<L: Laboratory>(
         };
         // the size that gives the effect its name comes first
         let size = sizes.iter().find(|size| size.effect == effect.id);
-        let vanishes = size.is_some_and(Size::may_be_nothing);
+        let vanishes = size.is_some_and(Size::may_be_absent);
         let Some(found) = in_place(session, answer, (position, vanishes), round).await? else {
             continue;
         };

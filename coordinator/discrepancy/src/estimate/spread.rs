@@ -73,7 +73,7 @@ impl Spread {
     }
 
     /// Returns whether the joint 95 % confidence region of some unknowns of the point `x` contains 0: an ellipsoid, for
-    /// one unknown its interval. Unknowns that the record does not determine are left out; without any other it does.
+    /// one unknown its interval. Unknowns that the record does not determine are left out; `true` if none is left.
     pub fn region_contains_zero(&self, x: &[f64], of: &[usize]) -> bool {
         let determined = of.iter().copied().filter(|&k| self.variance(k).is_finite());
         let of: Vec<usize> = determined.collect();

@@ -31,7 +31,8 @@ pub(crate) fn decide(
     let needed = needed_beside(current, base, thresholds);
     if gain < needed {
         round.reason = Some(format!(
-            "{} is the likeliest, but it gains {gain:.1} nats where the laws of the effects beside it may be off by {needed:.1}",
+            "{} is the likeliest, but it gains {gain:.1} nats where {needed:.1} are required: an error of 5 % in the laws \
+             of the effects beside it may gain as much",
             best.id
         ));
         return None;
@@ -69,8 +70,8 @@ pub(crate) fn decide_joint(
     Some(beside)
 }
 
-/// Returns the gain of log evidence (nats) that an effect needs beside those that a model has: at least as much as an
-/// error of [`LAW_FLOOR`] in the laws of these could lose of what they gained. An effect that resembles such an error
+/// Returns the gain of log evidence (nats) that an effect needs beside those that a model has: at least what an error of
+/// [`LAW_FLOOR`] in the laws of these may cost of their gain. An effect that resembles such an error
 /// gains that without being there: in practice set 4, beside a shift of the load card that gains 4,011 nats, an offset of
 /// the load gains 9.1, although none is hidden.
 pub(crate) fn needed_beside(present: &Fit, base: &Baseline, thresholds: &Thresholds) -> f64 {

@@ -1,6 +1,6 @@
 //! Score (Lagrange multiplier) test of one effect on the residual of a fitted model.
 //!
-//! The statistic is the decrease of the cost of the linearised problem by the effect, every unknown inside its
+//! The statistic is the decrease of the cost of the linearised problem by the effect, every other unknown inside its
 //! bounds. Where no bound holds an unknown it is `T^2 = r^T G (G^T B G)^-1 G^T r`, chi-squared under the null
 //! hypothesis, with as many degrees of freedom as the effect has sizes. Without the bounds, an effect would be found
 //! wherever it could stand beside a negative friction. For an effect whose size has a known sign the tail probability
@@ -17,17 +17,18 @@ pub struct NullModel {
     /// Minimum of the linearised problem inside the bounds of the variables.
     minimum: Linearized,
     variables: Vec<Variable>,
-    /// Changes of the prediction that recalibration can absorb.
+    /// Changes of the prediction that recalibration can absorb at the minimum.
     pub tangent: Tangent,
 }
 
 impl NullModel {
     /// Linearises a fitted model.
     pub fn new(at: &Linearized, variables: &[Variable]) -> Self {
+        let minimum = linear_minimum(at, variables);
         Self {
-            minimum: linear_minimum(at, variables),
+            tangent: Tangent::new(&minimum, variables),
             variables: variables.to_vec(),
-            tangent: Tangent::new(at, variables),
+            minimum,
         }
     }
 
@@ -277,6 +278,11 @@ mod tests {
             let found = score(&NullModel::new(&at, &variables), &signature, &[false]);
             assert!((found.statistic - 0.25).abs() < 1e-9, "{ended}: {found:?}");
             assert!((found.size[0] - 0.5 / 3.0).abs() < 1e-9, "{found:?}");
+            assert!((found.deviation[0] - 1.0 / 3.0).abs() < 1e-9, "{found:?}");
+            assert!(
+                found.absorbed.abs() < 1e-9 && found.freedom == 1,
+                "{found:?}"
+            );
         }
     }
 

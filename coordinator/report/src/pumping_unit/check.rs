@@ -109,7 +109,7 @@ fn energy(error: MachineCheck) -> Option<MachineCheck> {
 
 /// Returns whether an error of the energy balance is too large for the simulation to be that of the machine.
 fn is_open(error: f64) -> bool {
-    error > ENERGY_ERROR
+    error.is_nan() || error > ENERGY_ERROR
 }
 
 /// Returns why a simulation whose energy balance is open is not to be used; `None` for others.
@@ -124,8 +124,8 @@ pub(super) fn warning(simulation: &Simulation) -> Option<String> {
 /// Describes an error of the energy balance that is too large, and its remedy.
 fn open_balance(error: f64) -> String {
     format!(
-        "the energy balance of the simulation is off by {} of its work: a rope chatters on its head, which the steps \
-         do not resolve, and the stress is not that of the machine. Simulate with a smaller \
+        "the energy balance of the simulation is off by {} of its work: probably a rope chatters on its head, which the \
+         steps do not resolve, and the stress is not that of the machine. Simulate with a smaller \
          `tolerance` or shorter cylinders.",
         percent(error)
     )

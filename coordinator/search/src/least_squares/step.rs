@@ -57,16 +57,32 @@ pub(super) fn gradient_ratio(at: &Linearized, variables: &[Variable], cost: f64)
 pub fn linear_minimum(at: &Linearized, variables: &[Variable]) -> Linearized {
     /// Maximum number of steps; each but the first frees variables that the one before left at a bound.
     const STEPS: usize = 20;
+    let cost = |at: &Linearized| at.residual.norm_squared() + prior_cost(&at.x, variables);
     let mut minimum = at.clone();
+    let mut least = cost(&minimum);
     for _ in 0..STEPS {
         // twelve digits below the diagonal: decides nothing, keeps the factor
         let Some(step) = step(&minimum, variables, [1e-12, 0.0], false) else {
             break;
         };
-        minimum.residual += &minimum.jacobian * &step;
-        for ((x, step), v) in minimum.x.iter_mut().zip(step.iter()).zip(variables) {
-            *x = (*x + step).clamp(v.lower, v.upper);
+        let mut next = minimum.clone();
+        next.residual += &next.jacobian * &step;
+        for ((x, step), v) in next.x.iter_mut().zip(step.iter()).zip(variables) {
+            // exactly, as the sum need not be
+            *x = if (step - (v.lower - *x)).abs() <= 0.0 {
+                v.lower
+            } else if (step - (v.upper - *x)).abs() <= 0.0 {
+                v.upper
+            } else {
+                (*x + step).clamp(v.lower, v.upper)
+            };
         }
+        let reached = cost(&next);
+        // several components that end at bounds may raise the cost by more than rounding
+        if reached.is_nan() || reached > (1.0 + 1e-12) * least {
+            break;
+        }
+        (minimum, least) = (next, reached);
         if !is_held(&minimum, variables) {
             break;
         }

@@ -1,5 +1,6 @@
 //! Tests of the least-squares search on functions with a known minimum, including failed points and active
 //! bounds.
+use super::step::linear_minimum;
 use super::*;
 use nalgebra::{DMatrix, DVector};
 
@@ -99,6 +100,26 @@ fn the_settled_residual_is_that_of_the_linear_minimum() {
     assert!((search.linear_minimum_residual() - &expected).norm() < 1e-6);
     let promised = 1.0 - expected.norm_squared() / search.cost();
     assert!((search.predicted_decrease() - promised).abs() < 1e-6);
+}
+
+/// Checks that a variable that a step leaves on a bound is freed where the cost decreases towards the inside: the
+/// unbounded minimum is at -2 and -0.5, and with the first at zero the second has its minimum at 1.3.
+#[test]
+fn the_linear_minimum_frees_what_a_step_left_on_a_bound() {
+    let jacobian = DMatrix::from_row_slice(2, 2, &[1.0, -0.9, 0.0, 0.19_f64.sqrt()]);
+    let residual = |x: &[f64]| &jacobian * DVector::from_vec(vec![x[0] + 2.0, x[1] + 0.5]);
+    let at = Linearized {
+        x: vec![0.2, 0.2],
+        residual: residual(&[0.2, 0.2]),
+        jacobian: jacobian.clone(),
+    };
+    let bounded = variable(0.2, 0.0, 9.0);
+    let found = linear_minimum(&at, &[bounded.clone(), bounded]);
+    assert!(
+        found.x[0].abs() <= 0.0 && (found.x[1] - 1.3).abs() < 1e-9,
+        "{found:?}"
+    );
+    assert!((&found.residual - residual(&found.x)).norm() < 1e-9);
 }
 
 #[test]

@@ -13,7 +13,8 @@ pub(crate) struct AssessmentArguments {
     /// Gene file whose parameters are assessed, such as a run's `calibrated.toml`; the recommended ones by default.
     #[arg(long, value_name = "FILE", env = "HORSEHEAD_GENES")]
     genes: Option<PathBuf>,
-    /// Folder of the assessment [default: COMMAND in the folder of the run, or runs/CASE-COMMAND-HASH-seed0].
+    /// Folder of the assessment [default: COMMAND, which is this one, in the folder of the run, or
+    /// runs/CASE-COMMAND-HASH-seed0].
     #[arg(long, value_name = "DIR", env = "HORSEHEAD_RUN")]
     pub(crate) run: Option<PathBuf>,
 }

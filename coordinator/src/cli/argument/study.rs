@@ -9,14 +9,14 @@ use std::path::PathBuf;
 pub(crate) struct StudyArguments {
     /// Case folder, or the folder of a finished calibration.
     #[arg(value_name = "CASE|RUN", value_parser = case_folder)]
-    pub(crate) target: PathBuf,
+    target: PathBuf,
     /// Folder whose inputs and records replace those of the case: a new test of the
     /// same machine.
     #[arg(long, value_name = "DIR", env = "HORSEHEAD_MEASURED")]
-    pub(crate) measured: Option<PathBuf>,
+    measured: Option<PathBuf>,
     /// Gene file to start the fit from, such as a run's `calibrated.toml`.
     #[arg(long, value_name = "FILE", env = "HORSEHEAD_GENES")]
-    pub(crate) genes: Option<PathBuf>,
+    genes: Option<PathBuf>,
     /// Take every derivative as a difference of whole simulations, as if the model gave none: slower, and a
     /// check of the exact derivatives.
     #[arg(long, env = "HORSEHEAD_DIFFERENCES")]
@@ -24,8 +24,8 @@ pub(crate) struct StudyArguments {
     /// Fixes every random choice: the same seed gives the same bits [default: that of the calibration, or 1].
     #[arg(long, env = "HORSEHEAD_SEED")]
     pub(crate) seed: Option<u64>,
-    /// Run folder [default: runs/CASE-COMMAND-seedN, with what distinguishes the calibration, --genes, the effects of the
-    /// case and --measured].
+    /// Run folder [default: runs/CASE-COMMAND-seedN, COMMAND being this one, with what distinguishes the calibration,
+    /// --genes, the effects of the case and --measured].
     #[arg(long, value_name = "DIR", env = "HORSEHEAD_RUN")]
     pub(crate) run: Option<PathBuf>,
 }
