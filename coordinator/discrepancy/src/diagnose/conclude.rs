@@ -96,7 +96,7 @@ pub(crate) async fn conclude<L: Laboratory>(
     if diagnosis.generic.is_none() {
         diagnosis.notes.extend(rejection.left);
     }
-    remarks(inputs, diagnosis);
+    remarks(inputs, shown, diagnosis);
     let spread = Spread::of(&base.record.metric, &after);
     if let Some(growth) = spread.largest_growth() {
         diagnosis.notes.push(coloured(growth));

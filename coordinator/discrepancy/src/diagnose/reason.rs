@@ -3,6 +3,8 @@ use crate::baseline::base::Baseline;
 use crate::diagnose::diagnosis::WorkingDiagnosis;
 use crate::inputs::Inputs;
 use crate::model::fit::Fit;
+use crate::validation::compare::ValidationRecord;
+use crate::validation::predictive::unscored;
 use crate::verdict::{TestValidity, Verdict};
 
 /// Findings that contradict the hypothesis that the residual is noise alone, from which the verdict follows.
@@ -83,8 +85,13 @@ pub(crate) fn reason(
     })
 }
 
-/// Adds remarks on numerical error, and on effects excluded from the tests, to a diagnosis.
-pub(crate) fn remarks(inputs: &Inputs, diagnosis: &mut WorkingDiagnosis) {
+/// Adds remarks on numerical error, on records that do not test the answer, and on effects excluded from the tests, to a
+/// diagnosis.
+pub(crate) fn remarks(
+    inputs: &Inputs,
+    shown: &[ValidationRecord<'_>],
+    diagnosis: &mut WorkingDiagnosis,
+) {
     let (of, check) = match (&diagnosis.preflight_after, &diagnosis.preflight) {
         (Some(after), _) => ("the answer", Some(after)),
         (None, before) => ("the recalibrated model", before.as_ref()),
@@ -98,6 +105,10 @@ pub(crate) fn remarks(inputs: &Inputs, diagnosis: &mut WorkingDiagnosis) {
         ));
     }
     let added = diagnosis.rounds.iter().any(|round| round.added.is_some());
+    if added {
+        let unscored = unscored(shown, &diagnosis.prediction, inputs);
+        diagnosis.notes.extend(unscored);
+    }
     if added && diagnosis.preflight_after.is_none() {
         diagnosis.notes.push(
             "no finer model completes at the answer: its numerical error is unknown".to_owned(),

@@ -72,8 +72,8 @@ pub(crate) fn decide_joint(
 
 /// Returns the gain of log evidence (nats) that an effect needs beside those that a model has: at least what an error of
 /// [`LAW_FLOOR`] in the laws of these may cost of their gain. An effect that resembles such an error
-/// gains that without being there: in practice set 4, beside a shift of the load card that gains 4,011 nats, an offset of
-/// the load gains 9.1, although none is hidden.
+/// gains that without being there: in practice set 4, beside a shift in time that gains 4,011 nats, an offset gains
+/// 9.1, although none is hidden.
 pub(crate) fn needed_beside(present: &Fit, base: &Baseline, thresholds: &Thresholds) -> f64 {
     let gained = present.gain_over(&base.fit);
     thresholds.gain.max(LAW_FLOOR * LAW_FLOOR * gained)

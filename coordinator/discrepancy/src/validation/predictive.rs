@@ -62,12 +62,41 @@ pub(crate) struct Scores {
     pub(crate) together: Option<f64>,
     /// Gain of log evidence on the fitted record, over the dispersion (nats).
     pub(crate) evidence: f64,
-    /// Role and condition index of each record on which the model fails although the other model does not.
+    /// Role and condition index of each record for which the model does not run.
     pub(crate) failed: Vec<(DataRole, usize)>,
 }
 
+/// Returns whether a record can score a prediction: it took no part in the fit, and its noise is estimated from cycles or
+/// stated.
+fn can_score(one: &ValidationRecord<'_>) -> bool {
+    let known = !matches!(one.scale.known(), NoiseSource::Estimated);
+    one.part != DataRole::Fitted && known && one.scale.len() > 0
+}
+
+/// Describes the records that could score a prediction and do not, because the model without the effects does not run
+/// for them.
+pub(crate) fn unscored(
+    shown: &[ValidationRecord<'_>],
+    scored: &[Prediction],
+    inputs: &Inputs,
+) -> Vec<String> {
+    let is_scored = |one: &ValidationRecord<'_>| {
+        let mut all = scored.iter();
+        all.any(|own| own.part == one.part && own.condition == one.record.condition)
+    };
+    let left_out = shown.iter().filter(|one| can_score(one) && !is_scored(one));
+    let words = |one: &ValidationRecord<'_>| {
+        format!(
+            "the model without the added effects does not run for {}: that record does not test them",
+            one.part.words(&inputs.condition(one.record.condition))
+        )
+    };
+    left_out.map(words).collect()
+}
+
 /// Computes the predictive scores of a model against another on all data that took no part in the fit.
-/// Records whose noise is neither estimated from cycles nor stated are skipped.
+/// Records whose noise is neither estimated from cycles nor stated are skipped, and those for which the other model does
+/// not run.
 ///
 /// # Errors
 /// Those of the laboratory.
@@ -83,19 +112,16 @@ pub(crate) async fn scores<L: Laboratory>(
         ..Scores::default()
     };
     let mut all = Vec::new();
-    let known = |one: &&ValidationRecord<'_>| !matches!(one.scale.known(), NoiseSource::Estimated);
-    let held_out = shown.iter().filter(|one| one.part != DataRole::Fitted);
-    let some = |one: &&ValidationRecord<'_>| known(one) && one.scale.len() > 0;
-    for one in held_out.filter(some) {
+    for one in shown.iter().filter(|one| can_score(one)) {
         let with_it = linearized(experiments, one, with).await?;
         let without_it = linearized(experiments, one, without).await?;
         let seen = match (with_it, without_it) {
             (Some(with_it), Some(without_it)) => [with_it, without_it],
-            (None, Some(_)) => {
+            (None, _) => {
                 found.failed.push((one.part, one.record.condition));
                 continue;
             }
-            (_, None) => continue,
+            (Some(_), None) => continue,
         };
         let fitted = &experiments.on.record;
         let own = [(one, seen)];
